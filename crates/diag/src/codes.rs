@@ -1,0 +1,88 @@
+//! The one table of codes.
+//!
+//! Groups by thousands: 0 text and syntax, 1 names, 2 types and constants, 3 statements and flow,
+//! 4 IL, 5 ladder and L5X, 6 configuration, tasks and addresses, 7 target cannot express this,
+//! 8 dialect policy, 9 internal. A row needs `explain/<code>.md` (the build fails without it) and
+//! an example under `tests/codes/` that gives the code.
+
+use std::fmt;
+
+/// How bad a diagnostic is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Severity {
+    /// Worth knowing; the program is compiled as written.
+    Warning,
+    /// Nothing is built.
+    Error,
+}
+
+impl Severity {
+    /// The word used in rendered messages.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+macro_rules! codes {
+    ($($code:ident $severity:ident $title:literal;)*) => {
+        /// A stable code. Codes are never reused for another meaning.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Code {
+            $(#[doc = $title] $code,)*
+        }
+
+        impl Code {
+            /// Every code, in the order of the table.
+            pub const ALL: &'static [Code] = &[$(Code::$code),*];
+
+            /// The code as printed, for example `E5001`.
+            pub fn as_str(self) -> &'static str {
+                match self { $(Self::$code => stringify!($code),)* }
+            }
+
+            /// The severity a diagnostic with this code has unless a switch changes it.
+            pub fn severity(self) -> Severity {
+                match self { $(Self::$code => Severity::$severity,)* }
+            }
+
+            /// One line that says what the code is about.
+            pub fn title(self) -> &'static str {
+                match self { $(Self::$code => $title,)* }
+            }
+
+            /// The page that `iecc explain` prints, in Markdown.
+            pub fn explanation(self) -> &'static str {
+                match self {
+                    $(Self::$code => include_str!(concat!("../explain/", stringify!($code), ".md")),)*
+                }
+            }
+        }
+    };
+}
+
+codes! {
+    // 0 text and syntax
+    E0001 Error "file cannot be read";
+    E0002 Error "file is not UTF-8 text";
+    E0003 Error "file is too large";
+    // 5 ladder and L5X
+    E5001 Error "XML is malformed";
+    E5002 Error "file is not an L5X export";
+    E5003 Error "rung text does not follow the rung grammar";
+}
+
+impl Code {
+    /// The code with this name, ignoring case.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|code| code.as_str().eq_ignore_ascii_case(name))
+    }
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
