@@ -2,12 +2,15 @@
 //!
 //! A [`Span`] is a byte range in one file of a [`SourceMap`]; a [`LineIndex`] turns byte offsets
 //! into the line and column a person (1-based, UTF-8 characters) or an editor (0-based, UTF-16
-//! units) counts. Nothing here reads files: the text comes in as an argument.
+//! units) counts; a [`MappedText`] is text that was decoded from a file and knows the way
+//! back. Nothing here reads files: the text comes in as an argument.
 
 mod line_index;
+mod mapped;
 mod span;
 
 pub use line_index::{LineColumn, LineIndex, Utf16Position};
+pub use mapped::MappedText;
 pub use span::{FileId, Span, Spanned};
 
 /// One source text and the name under which messages show it.
@@ -51,7 +54,11 @@ impl SourceMap {
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
         let text = text.into();
         let lines = LineIndex::new(&text);
-        self.files.push(SourceFile { name: name.into(), text, lines });
+        self.files.push(SourceFile {
+            name: name.into(),
+            text,
+            lines,
+        });
         FileId::from_index(self.files.len() - 1)
     }
 

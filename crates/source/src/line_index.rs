@@ -28,7 +28,9 @@ impl LineIndex {
     /// Scans a text once.
     pub fn new(text: &str) -> Self {
         let newlines = text.bytes().enumerate().filter(|&(_, byte)| byte == b'\n');
-        let starts = std::iter::once(0).chain(newlines.map(|(i, _)| i as u32 + 1)).collect();
+        let starts = std::iter::once(0)
+            .chain(newlines.map(|(i, _)| i as u32 + 1))
+            .collect();
         Self { starts }
     }
 
@@ -51,13 +53,19 @@ impl LineIndex {
     /// The position a person would name.
     pub fn line_column(&self, text: &str, offset: u32) -> LineColumn {
         let (line, prefix) = self.prefix(text, offset);
-        LineColumn { line: line as u32 + 1, column: prefix.chars().count() as u32 + 1 }
+        LineColumn {
+            line: line as u32 + 1,
+            column: prefix.chars().count() as u32 + 1,
+        }
     }
 
     /// The position an editor would name.
     pub fn utf16(&self, text: &str, offset: u32) -> Utf16Position {
         let (line, prefix) = self.prefix(text, offset);
-        Utf16Position { line: line as u32, character: prefix.encode_utf16().count() as u32 }
+        Utf16Position {
+            line: line as u32,
+            character: prefix.encode_utf16().count() as u32,
+        }
     }
 
     /// How many lines the text has; a text without a newline has one.
@@ -74,11 +82,26 @@ mod tests {
     fn columns_count_characters_for_people_and_utf16_units_for_editors() {
         let text = "\u{feff}ab\r\nx\u{1F600}y\n";
         let index = LineIndex::new(text);
-        assert_eq!(index.line_column(text, 3), LineColumn { line: 1, column: 1 });
+        assert_eq!(
+            index.line_column(text, 3),
+            LineColumn { line: 1, column: 1 }
+        );
         let y = text.find('y').unwrap() as u32;
-        assert_eq!(index.line_column(text, y), LineColumn { line: 2, column: 3 });
-        assert_eq!(index.utf16(text, y), Utf16Position { line: 1, character: 3 });
-        assert_eq!(index.line_column(text, 999), LineColumn { line: 3, column: 1 });
+        assert_eq!(
+            index.line_column(text, y),
+            LineColumn { line: 2, column: 3 }
+        );
+        assert_eq!(
+            index.utf16(text, y),
+            Utf16Position {
+                line: 1,
+                character: 3
+            }
+        );
+        assert_eq!(
+            index.line_column(text, 999),
+            LineColumn { line: 3, column: 1 }
+        );
         assert_eq!(index.line_count(), 3);
     }
 }
