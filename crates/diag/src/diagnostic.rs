@@ -45,8 +45,14 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// A diagnostic at a place.
     pub fn new(code: Code, span: Span, message: impl Into<String>) -> Self {
-        let primary = Some(Label { span, text: String::new() });
-        Self { primary, ..Self::without_place(code, message) }
+        let primary = Some(Label {
+            span,
+            text: String::new(),
+        });
+        Self {
+            primary,
+            ..Self::without_place(code, message)
+        }
     }
 
     /// A diagnostic about no place in a source text.
@@ -74,7 +80,10 @@ impl Diagnostic {
     /// Points at a second place.
     #[must_use]
     pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.secondary.push(Label { span, text: text.into() });
+        self.secondary.push(Label {
+            span,
+            text: text.into(),
+        });
         self
     }
 
@@ -87,8 +96,17 @@ impl Diagnostic {
 
     /// Offers a replacement.
     #[must_use]
-    pub fn fix(mut self, title: impl Into<String>, span: Span, replacement: impl Into<String>) -> Self {
-        self.fix = Some(Fix { title: title.into(), span, replacement: replacement.into() });
+    pub fn fix(
+        mut self,
+        title: impl Into<String>,
+        span: Span,
+        replacement: impl Into<String>,
+    ) -> Self {
+        self.fix = Some(Fix {
+            title: title.into(),
+            span,
+            replacement: replacement.into(),
+        });
         self
     }
 }
@@ -137,7 +155,8 @@ impl Diagnostics {
 
     /// Sorts by file and place, errors without place first, keeping the order of equals.
     pub fn sort(&mut self) {
-        self.list.sort_by_key(|d| d.primary.as_ref().map(|label| (label.span, d.code)));
+        self.list
+            .sort_by_key(|d| d.primary.as_ref().map(|label| (label.span, d.code)));
     }
 }
 

@@ -15,15 +15,20 @@ pub fn render_text(map: &SourceMap, diagnostic: &Diagnostic, colour: bool) -> St
     for id in map.ids() {
         files.add(map.file(id).name(), map.file(id).text());
     }
-    let config = term::Config { tab_width: 4, ..term::Config::default() };
+    let config = term::Config {
+        tab_width: 4,
+        ..term::Config::default()
+    };
     let message = to_codespan(diagnostic);
     let bytes = if colour {
         let mut buffer = Buffer::ansi();
-        term::emit_to_write_style(&mut buffer, &config, &files, &message).expect("writing to memory");
+        term::emit_to_write_style(&mut buffer, &config, &files, &message)
+            .expect("writing to memory");
         buffer.into_inner()
     } else {
         let mut buffer = NoColor::new(Vec::new());
-        term::emit_to_write_style(&mut buffer, &config, &files, &message).expect("writing to memory");
+        term::emit_to_write_style(&mut buffer, &config, &files, &message)
+            .expect("writing to memory");
         buffer.into_inner()
     };
     String::from_utf8_lossy(&bytes).into_owned()
@@ -34,9 +39,18 @@ fn to_codespan(diagnostic: &Diagnostic) -> cs::Diagnostic<usize> {
         Severity::Warning => cs::Severity::Warning,
         Severity::Error => cs::Severity::Error,
     };
-    let primary = diagnostic.primary.iter().map(|l| label(cs::LabelStyle::Primary, l));
-    let secondary = diagnostic.secondary.iter().map(|l| label(cs::LabelStyle::Secondary, l));
-    let fix = diagnostic.fix.iter().map(|fix| format!("help: {}", fix.title));
+    let primary = diagnostic
+        .primary
+        .iter()
+        .map(|l| label(cs::LabelStyle::Primary, l));
+    let secondary = diagnostic
+        .secondary
+        .iter()
+        .map(|l| label(cs::LabelStyle::Secondary, l));
+    let fix = diagnostic
+        .fix
+        .iter()
+        .map(|fix| format!("help: {}", fix.title));
     cs::Diagnostic::new(severity)
         .with_code(diagnostic.code.as_str())
         .with_message(&diagnostic.message)

@@ -1,0 +1,78 @@
+//! Predecessors and reverse postorder.
+
+use crate::{Block, Function};
+use cranelift_entity::{EntitySet, SecondaryMap};
+
+/// The control flow graph of a function as it stood when computed.
+#[derive(Debug, Clone)]
+pub struct Cfg {
+    predecessors: SecondaryMap<Block, Vec<Block>>,
+    successors: SecondaryMap<Block, Vec<Block>>,
+    order: Vec<Block>,
+    reachable: EntitySet<Block>,
+}
+
+impl Cfg {
+    /// Computes the graph. Blocks without terminator have no successors.
+    pub fn new(func: &Function) -> Self {
+        let mut cfg = Self {
+            predecessors: SecondaryMap::new(),
+            successors: SecondaryMap::new(),
+            order: Vec::new(),
+            reachable: EntitySet::new(),
+        };
+        for &block in &func.layout {
+            let Some(terminator) = &func.block(block).terminator else {
+                continue;
+            };
+            for target in terminator.targets() {
+                if !cfg.successors[block].contains(&target.block) {
+                    cfg.successors[block].push(target.block);
+                    cfg.predecessors[target.block].push(block);
+                }
+            }
+        }
+        cfg.walk(func);
+        cfg
+    }
+
+    fn walk(&mut self, func: &Function) {
+        let Some(&entry) = func.layout.first() else {
+            return;
+        };
+        let mut stack = vec![(entry, 0)];
+        self.reachable.insert(entry);
+        while let Some((block, next)) = stack.pop() {
+            if let Some(&successor) = self.successors[block].get(next) {
+                stack.push((block, next + 1));
+                if self.reachable.insert(successor) {
+                    stack.push((successor, 0));
+                }
+            } else {
+                self.order.push(block);
+            }
+        }
+        self.order.reverse();
+    }
+
+    /// Blocks that jump to `block`, each once, in layout order.
+    pub fn predecessors(&self, block: Block) -> &[Block] {
+        &self.predecessors[block]
+    }
+
+    /// Blocks that `block` jumps to, each once, in text order.
+    pub fn successors(&self, block: Block) -> &[Block] {
+        &self.successors[block]
+    }
+
+    /// Reachable blocks in reverse postorder: the entry first, and without loops every block
+    /// after its predecessors.
+    pub fn reverse_postorder(&self) -> &[Block] {
+        &self.order
+    }
+
+    /// Whether the entry leads to the block.
+    pub fn is_reachable(&self, block: Block) -> bool {
+        self.reachable.contains(block)
+    }
+}

@@ -1,0 +1,917 @@
+//! Text to modules. One message for the first mistake, with line and column; no panics, bounded
+//! nesting.
+
+use super::lex::{Token, UNITS, tokens};
+use crate::{
+    BinaryOp, Block, CompareOp, ConvertOp, FaultCode, FieldDef, FuncId, Function, Image, Index,
+    InstData, Layout, MAX_REGION_BYTES, MemType, Module, Origin, OriginData, Place, Projection,
+    RefParamData, Root, Scalar, StructId, Target, Terminator, Type, TypeTable, UnaryOp, Value,
+};
+use cranelift_entity::PrimaryMap;
+use iecc_source::{FileId, LineIndex, Span};
+use std::collections::HashMap;
+use std::fmt;
+
+/// How deep array types may nest.
+const MAX_TYPE_DEPTH: u32 = 16;
+
+/// Why a text is not a module.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ParseError {
+    /// Line, from 1.
+    pub line: u32,
+    /// Column, from 1.
+    pub column: u32,
+    /// What is there and what was expected.
+    pub message: String,
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.line, self.column, self.message)
+    }
+}
+
+impl std::error::Error for ParseError {}
+
+type Result<T> = std::result::Result<T, (usize, String)>;
+
+/// Parses a module. It may still break the verifier's rules.
+pub fn parse_module(text: &str) -> std::result::Result<Module, ParseError> {
+    parse(text).map_err(|(offset, message)| {
+        let at = LineIndex::new(text).line_column(text, offset as u32);
+        ParseError {
+            line: at.line,
+            column: at.column,
+            message,
+        }
+    })
+}
+
+fn parse(text: &str) -> Result<Module> {
+    let tokens = tokens(text)?;
+    let mut parser = Parser {
+        tokens,
+        next: 0,
+        types: TypeTable::default(),
+        functions: HashMap::new(),
+    };
+    parser.module()
+}
+
+struct Parser {
+    tokens: Vec<(usize, Token)>,
+    next: usize,
+    types: TypeTable,
+    functions: HashMap<String, FuncId>,
+}
+
+/// Header lines that need the complete regions or functions; resolved at the end of the header.
+#[derive(Default)]
+struct Header {
+    regions: HashMap<&'static str, StructId>,
+    image: Option<(Layout, Image)>,
+    names: Vec<(String, Place)>,
+    origins: PrimaryMap<Origin, OriginData>,
+    scan: Option<FuncId>,
+    prescan: Option<FuncId>,
+}
+
+impl Parser {
+    fn peek(&self) -> &Token {
+        &self.tokens[self.next].1
+    }
+
+    fn offset(&self) -> usize {
+        self.tokens[self.next].0
+    }
+
+    fn fail<T>(&self, expected: &str) -> Result<T> {
+        Err((
+            self.offset(),
+            format!("found {}, expected {expected}", self.peek().describe()),
+        ))
+    }
+
+    fn is(&self, punct: &'static str) -> bool {
+        *self.peek() == Token::Punct(punct)
+    }
+
+    fn accept(&mut self, punct: &'static str) -> bool {
+        let found = self.is(punct);
+        if found {
+            self.next += 1;
+        }
+        found
+    }
+
+    fn expect(&mut self, punct: &'static str) -> Result<()> {
+        if self.accept(punct) {
+            Ok(())
+        } else {
+            self.fail(&format!("`{punct}`"))
+        }
+    }
+
+    fn accept_word(&mut self, word: &str) -> bool {
+        let found = matches!(self.peek(), Token::Word(found) if found == word);
+        if found {
+            self.next += 1;
+        }
+        found
+    }
+
+    fn name(&mut self) -> Result<String> {
+        match self.peek().clone() {
+            Token::Word(name) | Token::Quoted(name) => {
+                self.next += 1;
+                Ok(name)
+            }
+            Token::Number(_) | Token::Punct(_) | Token::End => self.fail("a name"),
+        }
+    }
+
+    /// `open item, item close`; with `open` already taken.
+    fn list<T>(
+        &mut self,
+        close: &'static str,
+        mut item: impl FnMut(&mut Self) -> Result<T>,
+    ) -> Result<Vec<T>> {
+        let mut items = Vec::new();
+        while !self.accept(close) {
+            if !items.is_empty() {
+                self.expect(",")?;
+            }
+            items.push(item(self)?);
+        }
+        Ok(items)
+    }
+
+    fn number<T: std::str::FromStr>(&mut self, expected: &str) -> Result<T> {
+        let parsed = match self.peek() {
+            Token::Number(text) => text.parse().ok(),
+            Token::Word(_) | Token::Quoted(_) | Token::Punct(_) | Token::End => None,
+        };
+        match parsed {
+            Some(value) => {
+                self.next += 1;
+                Ok(value)
+            }
+            None => self.fail(expected),
+        }
+    }
+
+    /// A word made of a letter and a number: `v12`, `b3`.
+    fn numbered(&mut self, letter: char, expected: &str) -> Result<u32> {
+        let number = match self.peek() {
+            Token::Word(word) => word
+                .strip_prefix(letter)
+                .and_then(|digits| digits.parse::<u32>().ok()),
+            Token::Quoted(_) | Token::Number(_) | Token::Punct(_) | Token::End => None,
+        };
+        match number {
+            Some(number) if number < u32::MAX => {
+                self.next += 1;
+                Ok(number)
+            }
+            _ => self.fail(expected),
+        }
+    }
+
+    // ---- header ----
+
+    fn module(&mut self) -> Result<Module> {
+        if !self.accept_word("module") {
+            return self.fail("`module`");
+        }
+        let name = self.name()?;
+        let mut funcs = self.declare_functions()?;
+        let mut header = Header::default();
+        while !matches!(self.peek(), Token::End) && !self.accept_word("fn") {
+            self.header_line(&mut header)?;
+        }
+        let state = self.region(&mut header, "state");
+        let input = self.region(&mut header, "input");
+        let output = self.region(&mut header, "output");
+        let image = self.image(&mut header)?.1.clone();
+        let Some(scan) = header.scan else {
+            return self.fail("a line `scan @function` before the functions");
+        };
+        let mut module = Module {
+            name,
+            types: std::mem::take(&mut self.types),
+            state,
+            input,
+            output,
+            image,
+            funcs: PrimaryMap::new(),
+            scan,
+            prescan: header.prescan,
+            names: header.names,
+            origins: header.origins,
+        };
+        for id in funcs.keys() {
+            self.types = std::mem::take(&mut module.types);
+            let func = self.function(&module);
+            module.types = std::mem::take(&mut self.types);
+            funcs[id] = func?;
+            if !matches!(self.peek(), Token::End) && !self.accept_word("fn") {
+                return self.fail("`fn` or the end of the text");
+            }
+        }
+        module.funcs = funcs;
+        Ok(module)
+    }
+
+    /// Finds all `fn @name`, so that calls and `scan` may stand before the function.
+    fn declare_functions(&mut self) -> Result<PrimaryMap<FuncId, Function>> {
+        let mut funcs = PrimaryMap::new();
+        for window in self.tokens.windows(3) {
+            let [
+                (offset, Token::Word(word)),
+                (_, Token::Punct("@")),
+                (_, Token::Word(name) | Token::Quoted(name)),
+            ] = window
+            else {
+                continue;
+            };
+            if word != "fn" {
+                continue;
+            }
+            let id = funcs.push(Function::new(name.clone(), Vec::new()));
+            if self.functions.insert(name.clone(), id).is_some() {
+                return Err((*offset, format!("function @{name} is defined twice")));
+            }
+        }
+        Ok(funcs)
+    }
+
+    fn header_line(&mut self, header: &mut Header) -> Result<()> {
+        let Token::Word(keyword) = self.peek().clone() else {
+            return self.fail("a declaration");
+        };
+        self.next += 1;
+        match keyword.as_str() {
+            "struct" => {
+                let name = self.name()?;
+                self.fields(name).map(|_| ())
+            }
+            "state" | "input" | "output" => {
+                let region = match keyword.as_str() {
+                    "state" => "state",
+                    "input" => "input",
+                    _ => "output",
+                };
+                let id = self.fields(keyword)?;
+                header.regions.insert(region, id);
+                Ok(())
+            }
+            "init" => self.init(header),
+            "name" => self.alias(header),
+            "origin" => self.origin_line(header),
+            "scan" => {
+                header.scan = Some(self.function_name()?);
+                Ok(())
+            }
+            "prescan" => {
+                header.prescan = Some(self.function_name()?);
+                Ok(())
+            }
+            _ => {
+                self.next -= 1;
+                self.fail("struct, state, input, output, init, name, origin, prescan, scan or fn")
+            }
+        }
+    }
+
+    fn region(&mut self, header: &mut Header, name: &'static str) -> StructId {
+        *header
+            .regions
+            .entry(name)
+            .or_insert_with(|| self.types.add_struct(name, Vec::new()))
+    }
+
+    fn fields(&mut self, name: String) -> Result<StructId> {
+        if self.types.struct_named(&name).is_some() {
+            return self.fail(&format!("a new name, {name} is defined already"));
+        }
+        self.expect("{")?;
+        let fields = self.list("}", |p| {
+            let name = p.name()?;
+            p.expect(":")?;
+            Ok(FieldDef {
+                name,
+                ty: p.mem_type(0)?,
+            })
+        })?;
+        Ok(self.types.add_struct(name, fields))
+    }
+
+    fn mem_type(&mut self, depth: u32) -> Result<MemType> {
+        if self.accept("[") {
+            if depth == MAX_TYPE_DEPTH {
+                return self.fail("fewer nested array types");
+            }
+            let len = self.number("a number of elements")?;
+            if !self.accept_word("x") {
+                return self.fail("`x`");
+            }
+            let element = self.mem_type(depth + 1)?;
+            self.expect("]")?;
+            return Ok(MemType::Array(self.types.array(element, len)));
+        }
+        let at = self.next;
+        let name = self.name()?;
+        if let Some(ty) = Type::parse(&name) {
+            return Ok(MemType::Scalar(ty));
+        }
+        match self.types.struct_named(&name) {
+            Some(id) => Ok(MemType::Struct(id)),
+            None => {
+                self.next = at;
+                self.fail("a type defined above")
+            }
+        }
+    }
+
+    fn value_type(&mut self) -> Result<Type> {
+        match self.mem_type(0)? {
+            MemType::Scalar(ty) => Ok(ty),
+            MemType::Struct(_) | MemType::Array(_) => {
+                self.next -= 1;
+                self.fail("a value type")
+            }
+        }
+    }
+
+    fn image<'h>(&mut self, header: &'h mut Header) -> Result<&'h mut (Layout, Image)> {
+        let state = self.region(header, "state");
+        if header.image.is_none() {
+            let layout = Layout::new(&self.types);
+            if layout.size(&self.types, MemType::Struct(state)) > MAX_REGION_BYTES {
+                return self.fail("a smaller state region");
+            }
+            let image = Image::zero(&layout, &self.types, state);
+            header.image = Some((layout, image));
+        }
+        Ok(header.image.as_mut().expect("just set"))
+    }
+
+    fn init(&mut self, header: &mut Header) -> Result<()> {
+        let state = self.region(header, "state");
+        let at = self.next;
+        let (path, ty) = self.static_path(MemType::Struct(state), true)?;
+        let (MemType::Scalar(ty), false) = (ty, matches!(path.last(), Some(Projection::Bit(_))))
+        else {
+            self.next = at;
+            return self.fail("a scalar of the state");
+        };
+        self.expect("=")?;
+        let value = self.literal(ty)?;
+        let types = self.types.clone();
+        let (layout, image) = self.image(header)?;
+        let place = Place {
+            root: Root::State,
+            path,
+        };
+        image.set_place(layout, &types, state, &place, value.bits);
+        Ok(())
+    }
+
+    fn alias(&mut self, header: &mut Header) -> Result<()> {
+        let name = self.name()?;
+        self.expect("=")?;
+        if !self.accept_word("state") {
+            return self.fail("`state`");
+        }
+        let state = self.region(header, "state");
+        let (path, _) = self.static_path(MemType::Struct(state), false)?;
+        header.names.push((
+            name,
+            Place {
+                root: Root::State,
+                path,
+            },
+        ));
+        Ok(())
+    }
+
+    fn origin_line(&mut self, header: &mut Header) -> Result<()> {
+        self.expect("@")?;
+        let number: usize = self.number("the number of the origin")?;
+        if number != header.origins.len() {
+            self.next -= 1;
+            return self.fail(&format!("origin @{}", header.origins.len()));
+        }
+        self.expect("=")?;
+        let label = self.name()?;
+        let mut span = None;
+        if matches!(self.peek(), Token::Number(_)) {
+            let file: u32 = self.number("a file number")?;
+            self.expect(":")?;
+            let start: u32 = self.number("a byte offset")?;
+            self.expect("..")?;
+            let end: u32 = self.number("a byte offset")?;
+            if end < start {
+                return self.fail("a span that ends behind its start");
+            }
+            span = Some(Span::new(FileId::from_index(file as usize), start, end));
+        }
+        header.origins.push(OriginData { label, span });
+        Ok(())
+    }
+
+    fn function_name(&mut self) -> Result<FuncId> {
+        self.expect("@")?;
+        let at = self.next;
+        let name = self.name()?;
+        match self.functions.get(&name) {
+            Some(id) => Ok(*id),
+            None => {
+                self.next = at;
+                self.fail("the name of a function in this text")
+            }
+        }
+    }
+
+    fn literal(&mut self, ty: Type) -> Result<Scalar> {
+        let parsed = match self.peek() {
+            Token::Number(text) => literal(ty, text),
+            Token::Word(_) | Token::Quoted(_) | Token::Punct(_) | Token::End => None,
+        };
+        match parsed {
+            Some(bits) => {
+                self.next += 1;
+                Ok(Scalar::new(ty, bits))
+            }
+            None => self.fail(&format!("a number of type {ty}")),
+        }
+    }
+
+    // ---- places ----
+
+    fn static_path(&mut self, start: MemType, bare: bool) -> Result<(Vec<Projection>, MemType)> {
+        self.path(start, bare, &mut |p| p.fail("a constant index"))
+    }
+
+    /// Projections from `start`; a `bare` path begins with a field name without its dot. Also
+    /// gives the type at the end; a bit counts as its integer.
+    fn path(
+        &mut self,
+        start: MemType,
+        bare: bool,
+        value: &mut dyn FnMut(&mut Self) -> Result<Index>,
+    ) -> Result<(Vec<Projection>, MemType)> {
+        let (mut path, mut at, mut first) = (Vec::new(), start, bare);
+        while first || self.is(".") || self.is("[") {
+            let dotted = first || self.accept(".");
+            first = false;
+            let step = match at {
+                MemType::Struct(id) if dotted => {
+                    let (field, ty) = self.field(id)?;
+                    at = ty;
+                    field
+                }
+                MemType::Array(id) if !dotted => {
+                    at = self.types.array_type(id).element;
+                    Projection::Index(self.bracketed(value)?)
+                }
+                MemType::Scalar(ty) if dotted && ty.is_int() => {
+                    let bit = if self.is("[") {
+                        self.bracketed(value)?
+                    } else {
+                        Index::Const(self.number("a bit number")?)
+                    };
+                    path.push(Projection::Bit(bit));
+                    return Ok((path, at));
+                }
+                MemType::Struct(_) => return self.fail("`.` and a field"),
+                MemType::Array(_) => return self.fail("`[` and an index"),
+                MemType::Scalar(_) => return self.fail("nothing behind a scalar"),
+            };
+            path.push(step);
+        }
+        Ok((path, at))
+    }
+
+    fn field(&mut self, id: StructId) -> Result<(Projection, MemType)> {
+        let at = self.next;
+        let name = self.name()?;
+        match self.types.structs[id].field(&name) {
+            Some(field) => Ok((
+                Projection::Field(field),
+                self.types.structs[id].fields[field as usize].ty,
+            )),
+            None => {
+                self.next = at;
+                self.fail(&format!("a field of {}", self.types.structs[id].name))
+            }
+        }
+    }
+
+    fn bracketed(&mut self, value: &mut dyn FnMut(&mut Self) -> Result<Index>) -> Result<Index> {
+        self.expect("[")?;
+        let index = match self.peek() {
+            Token::Number(_) => Index::Const(self.number("an index")?),
+            Token::Word(_) | Token::Quoted(_) | Token::Punct(_) | Token::End => value(self)?,
+        };
+        self.expect("]")?;
+        Ok(index)
+    }
+
+    // ---- functions ----
+
+    /// A function behind `fn`.
+    fn function(&mut self, module: &Module) -> Result<Function> {
+        self.expect("@")?;
+        let name = self.name()?;
+        let mut func = Function::new(name, Vec::new());
+        self.expect("[")?;
+        let refs = self.list("]", |p| {
+            let name = p.name()?;
+            p.expect(":")?;
+            Ok(RefParamData {
+                name,
+                ty: p.mem_type(0)?,
+            })
+        })?;
+        func.refs = refs.into_iter().collect();
+        self.expect("(")?;
+        let params = self.list(")", Self::value_type)?;
+        self.expect("->")?;
+        self.expect("(")?;
+        func.results = self.list(")", Self::value_type)?;
+        self.expect("{")?;
+        let at = self.offset();
+        let mut body = Body {
+            module,
+            func,
+            values: HashMap::new(),
+            blocks: HashMap::new(),
+        };
+        while !self.accept("}") {
+            self.block(&mut body)?;
+        }
+        let func = body.finish().map_err(|message| (at, message))?;
+        if func.param_types() != params {
+            return Err((
+                at,
+                "the parameters of the first block differ from those of the function".to_owned(),
+            ));
+        }
+        Ok(func)
+    }
+
+    fn block(&mut self, body: &mut Body<'_>) -> Result<()> {
+        let number = self.numbered('b', "a block `bN:`")?;
+        let block = body.func.add_block();
+        if body.blocks.insert(number, block).is_some() {
+            self.next -= 1;
+            return self.fail("a block that is not defined yet");
+        }
+        if self.accept("(") {
+            self.list(")", |p| {
+                let (number, ty) = p.typed_value()?;
+                let value = body.func.add_param(block, ty);
+                body.define(p, number, value)
+            })?;
+        }
+        self.expect(":")?;
+        while body.func.block(block).terminator.is_none() {
+            self.line(body, block)?;
+        }
+        Ok(())
+    }
+
+    fn typed_value(&mut self) -> Result<(u32, Type)> {
+        let number = self.numbered('v', "a value `vN`")?;
+        self.expect(":")?;
+        Ok((number, self.value_type()?))
+    }
+
+    fn line(&mut self, body: &mut Body<'_>, block: Block) -> Result<()> {
+        let Token::Word(word) = self.peek().clone() else {
+            return self.fail("an instruction or terminator");
+        };
+        if let Some(terminator) = self.terminator(&word)? {
+            let origin = self.origin(body)?;
+            body.func.set_terminator(block, terminator, origin);
+            return Ok(());
+        }
+        let mut results = Vec::new();
+        while word != "store" && word != "call" {
+            results.push(self.typed_value()?);
+            if !self.accept(",") {
+                self.expect("=")?;
+                break;
+            }
+        }
+        let types: Vec<Type> = results.iter().map(|(_, ty)| *ty).collect();
+        let data = self.inst(body, &types)?;
+        let origin = self.origin(body)?;
+        let inst = body.func.append_inst(block, data, &types, origin);
+        let values = body.func.results_of(inst).to_vec();
+        results
+            .iter()
+            .zip(values)
+            .try_for_each(|(&(number, _), value)| body.define(self, number, value))
+    }
+
+    fn origin(&mut self, body: &Body<'_>) -> Result<Option<Origin>> {
+        if !self.accept("@") {
+            return Ok(None);
+        }
+        let number: u32 = self.number("the number of an origin")?;
+        if number as usize >= body.module.origins.len() {
+            self.next -= 1;
+            return self.fail("an origin of the header");
+        }
+        Ok(Some(Origin::from_u32(number)))
+    }
+
+    fn value(&mut self) -> Result<Value> {
+        self.numbered('v', "a value `vN`").map(Value::from_u32)
+    }
+
+    fn pair(&mut self) -> Result<[Value; 2]> {
+        let left = self.value()?;
+        self.expect(",")?;
+        Ok([left, self.value()?])
+    }
+
+    fn inst(&mut self, body: &Body<'_>, types: &[Type]) -> Result<InstData> {
+        let at = self.next;
+        let name = self.name()?;
+        let ty = types.first().copied();
+        if let Some(data) = self.table_inst(&name, ty)? {
+            return Ok(data);
+        }
+        match (name.as_str(), ty) {
+            ("const", Some(ty)) => self.literal(ty).map(|value| InstData::Const {
+                ty,
+                bits: value.bits,
+            }),
+            ("select", _) => {
+                let cond = self.value()?;
+                self.expect(",")?;
+                Ok(InstData::Select {
+                    cond,
+                    args: self.pair()?,
+                })
+            }
+            ("load", _) => Ok(InstData::Load {
+                place: self.place(body)?,
+            }),
+            ("store", _) => {
+                let place = self.place(body)?;
+                self.expect(",")?;
+                Ok(InstData::Store {
+                    place,
+                    value: self.value()?,
+                })
+            }
+            ("now", _) => Ok(InstData::Now),
+            ("elapsed", Some(ty)) => {
+                let place = self.place(body)?;
+                self.expect(",")?;
+                Ok(InstData::Elapsed {
+                    place,
+                    unit_ns: self.unit()?,
+                    ty,
+                })
+            }
+            ("step", Some(ty)) => Ok(InstData::Step {
+                unit_ns: self.unit()?,
+                ty,
+            }),
+            ("call", _) => {
+                let func = self.function_name()?;
+                self.expect("[")?;
+                let refs = self.list("]", |p| p.place(body))?;
+                self.expect("(")?;
+                Ok(InstData::Call {
+                    func,
+                    refs,
+                    args: self.list(")", Self::value)?,
+                })
+            }
+            _ => {
+                self.next = at;
+                self.fail("an instruction")
+            }
+        }
+    }
+
+    fn table_inst(&mut self, name: &str, ty: Option<Type>) -> Result<Option<InstData>> {
+        if let Some(op) = UnaryOp::parse(name) {
+            return Ok(Some(InstData::Unary {
+                op,
+                arg: self.value()?,
+            }));
+        }
+        if let Some(op) = BinaryOp::parse(name) {
+            return Ok(Some(InstData::Binary {
+                op,
+                args: self.pair()?,
+            }));
+        }
+        if let Some(op) = CompareOp::parse(name) {
+            return Ok(Some(InstData::Compare {
+                op,
+                args: self.pair()?,
+            }));
+        }
+        match (ConvertOp::parse(name), ty) {
+            (Some(op), Some(to)) => Ok(Some(InstData::Convert {
+                op,
+                to,
+                arg: self.value()?,
+            })),
+            (Some(_), None) => self.fail("a result for the conversion"),
+            (None, _) => Ok(None),
+        }
+    }
+
+    fn unit(&mut self) -> Result<u64> {
+        let parsed = match self.peek() {
+            Token::Number(text) => duration(text),
+            Token::Word(_) | Token::Quoted(_) | Token::Punct(_) | Token::End => None,
+        };
+        match parsed {
+            Some(unit) => {
+                self.next += 1;
+                Ok(unit)
+            }
+            None => self.fail("a duration such as 1ms"),
+        }
+    }
+
+    fn place(&mut self, body: &Body<'_>) -> Result<Place> {
+        let at = self.next;
+        let name = self.name()?;
+        let named = body.func.refs.iter().find(|(_, data)| data.name == name);
+        let (root, start) = match (name.as_str(), named) {
+            ("state", _) => (Root::State, MemType::Struct(body.module.state)),
+            ("input", _) => (Root::Input, MemType::Struct(body.module.input)),
+            ("output", _) => (Root::Output, MemType::Struct(body.module.output)),
+            (_, Some((param, data))) => (Root::Ref(param), data.ty),
+            (_, None) => {
+                self.next = at;
+                return self.fail("state, input, output or a reference parameter");
+            }
+        };
+        let (path, _) = self.path(start, false, &mut |p| p.value().map(Index::Value))?;
+        Ok(Place { root, path })
+    }
+
+    fn target(&mut self) -> Result<Target> {
+        let block = Block::from_u32(self.numbered('b', "a block `bN`")?);
+        let args = if self.accept("(") {
+            self.list(")", Self::value)?
+        } else {
+            Vec::new()
+        };
+        Ok(Target { block, args })
+    }
+
+    fn terminator(&mut self, word: &str) -> Result<Option<Terminator>> {
+        if !matches!(word, "jump" | "brif" | "switch" | "return" | "fault") {
+            return Ok(None);
+        }
+        self.next += 1;
+        let terminator = match word {
+            "jump" => Terminator::Jump(self.target()?),
+            "brif" => {
+                let cond = self.value()?;
+                self.expect(",")?;
+                let then = self.target()?;
+                self.expect(",")?;
+                Terminator::Brif {
+                    cond,
+                    then,
+                    otherwise: self.target()?,
+                }
+            }
+            "switch" => self.switch()?,
+            "fault" => {
+                let at = self.next;
+                let Some(fault) = FaultCode::parse(&self.name()?) else {
+                    self.next = at;
+                    return self.fail("the name of a fault");
+                };
+                Terminator::Fault(fault)
+            }
+            _ => Terminator::Return(self.returned()?),
+        };
+        Ok(Some(terminator))
+    }
+
+    fn returned(&mut self) -> Result<Vec<Value>> {
+        let mut values = Vec::new();
+        // `return` has no end mark; what follows is a value, a block label, `@` or `}`.
+        while values.is_empty() && matches!(self.peek(), Token::Word(word) if word.starts_with('v'))
+            || self.accept(",")
+        {
+            values.push(self.value()?);
+        }
+        Ok(values)
+    }
+
+    fn switch(&mut self) -> Result<Terminator> {
+        let value = self.value()?;
+        self.expect(",")?;
+        let default = self.target()?;
+        self.expect("[")?;
+        // The type of the selector may not be known yet; `Body::finish` masks the numbers.
+        let cases = self.list("]", |p| {
+            let bits = p.literal(Type::I64)?.bits;
+            p.expect(":")?;
+            Ok((bits, p.target()?))
+        })?;
+        Ok(Terminator::Switch {
+            value,
+            cases,
+            default,
+        })
+    }
+}
+
+/// A function whose uses still hold the numbers of the text.
+struct Body<'m> {
+    module: &'m Module,
+    func: Function,
+    values: HashMap<u32, Value>,
+    blocks: HashMap<u32, Block>,
+}
+
+impl Body<'_> {
+    fn define(&mut self, parser: &Parser, number: u32, value: Value) -> Result<()> {
+        match self.values.insert(number, value) {
+            None => Ok(()),
+            Some(_) => Err((parser.offset(), format!("value v{number} is defined twice"))),
+        }
+    }
+
+    fn finish(mut self) -> std::result::Result<Function, String> {
+        if self.func.layout.is_empty() {
+            return Err(format!("function @{} has no block", self.func.name));
+        }
+        let mut undefined = None;
+        self.func.map_uses(|value| {
+            let number = value.as_u32();
+            self.values.get(&number).copied().unwrap_or_else(|| {
+                undefined = Some(number);
+                value
+            })
+        });
+        if let Some(number) = undefined {
+            return Err(format!(
+                "value v{number} is used but not defined in @{}",
+                self.func.name
+            ));
+        }
+        for block in self.func.layout.clone() {
+            let mut terminator = self.func.terminator(block).clone();
+            for target in terminator.targets_mut() {
+                let number = target.block.as_u32();
+                target.block = *self
+                    .blocks
+                    .get(&number)
+                    .ok_or(format!("block b{number} is not defined"))?;
+            }
+            if let Terminator::Switch { value, cases, .. } = &mut terminator {
+                let mask = self.func.value_type(*value).mask();
+                cases.iter_mut().for_each(|(bits, _)| *bits &= mask);
+            }
+            let origin = self.func.block(block).terminator_origin;
+            self.func.set_terminator(block, terminator, origin);
+        }
+        Ok(self.func)
+    }
+}
+
+fn literal(ty: Type, text: &str) -> Option<u64> {
+    if let Some(hex) = text.strip_prefix("0x") {
+        return u64::from_str_radix(hex, 16)
+            .ok()
+            .filter(|bits| bits & !ty.mask() == 0);
+    }
+    match ty {
+        Type::F32 => text.parse::<f32>().ok().map(|x| u64::from(x.to_bits())),
+        Type::F64 => text.parse::<f64>().ok().map(f64::to_bits),
+        Type::I1 => text.parse::<u64>().ok().filter(|&bits| bits < 2),
+        Type::I8 | Type::I16 | Type::I32 | Type::I64 => {
+            let value = text.parse::<i128>().ok()?;
+            let low = i128::from(i64::MIN) >> (64 - ty.bits());
+            let range = low..=i128::from(ty.mask());
+            range.contains(&value).then_some(value as u64 & ty.mask())
+        }
+    }
+}
+
+fn duration(text: &str) -> Option<u64> {
+    let split = text.find(|c: char| !c.is_ascii_digit())?;
+    let (number, unit) = text.split_at(split);
+    let (_, ns) = UNITS.into_iter().find(|(name, _)| *name == unit)?;
+    number.parse::<u64>().ok()?.checked_mul(ns)
+}

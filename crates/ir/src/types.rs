@@ -1,0 +1,206 @@
+//! Value types, memory types, and the table that owns structs and arrays.
+
+use cranelift_entity::{PrimaryMap, entity_impl};
+use std::fmt;
+
+/// The type of an SSA value. Signedness is in the operation, not in the type.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Type {
+    /// One bit: BOOL.
+    I1,
+    /// 8 bits.
+    I8,
+    /// 16 bits.
+    I16,
+    /// 32 bits.
+    I32,
+    /// 64 bits.
+    I64,
+    /// IEEE 754 binary32.
+    F32,
+    /// IEEE 754 binary64.
+    F64,
+}
+
+impl Type {
+    /// All types, narrow to wide.
+    pub const ALL: [Type; 7] = [
+        Type::I1,
+        Type::I8,
+        Type::I16,
+        Type::I32,
+        Type::I64,
+        Type::F32,
+        Type::F64,
+    ];
+
+    /// Width of the value in bits.
+    pub fn bits(self) -> u32 {
+        match self {
+            Self::I1 => 1,
+            Self::I8 => 8,
+            Self::I16 => 16,
+            Self::I32 | Self::F32 => 32,
+            Self::I64 | Self::F64 => 64,
+        }
+    }
+
+    /// Bytes in memory; also the alignment. `i1` takes one byte holding 0 or 1.
+    pub fn bytes(self) -> u32 {
+        self.bits().div_ceil(8)
+    }
+
+    /// Whether this is one of the integer types, `i1` included.
+    pub fn is_int(self) -> bool {
+        match self {
+            Self::I1 | Self::I8 | Self::I16 | Self::I32 | Self::I64 => true,
+            Self::F32 | Self::F64 => false,
+        }
+    }
+
+    /// Whether this is a floating-point type.
+    pub fn is_float(self) -> bool {
+        !self.is_int()
+    }
+
+    /// The bits a value of this type may have set.
+    pub fn mask(self) -> u64 {
+        u64::MAX >> (64 - self.bits())
+    }
+
+    /// The value's bits read as a two's complement number. `i1` reads as 0 or -1.
+    pub fn signed(self, bits: u64) -> i64 {
+        let shift = 64 - self.bits();
+        ((bits << shift) as i64) >> shift
+    }
+
+    /// The name in the text form.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::I1 => "i1",
+            Self::I8 => "i8",
+            Self::I16 => "i16",
+            Self::I32 => "i32",
+            Self::I64 => "i64",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+
+    /// The type with this name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|ty| ty.name() == name)
+    }
+}
+
+impl fmt::Display for Type {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Names a struct of a [`TypeTable`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct StructId(u32);
+entity_impl!(StructId, "struct");
+
+/// Names an array type of a [`TypeTable`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ArrayId(u32);
+entity_impl!(ArrayId, "array");
+
+/// The type of a place in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum MemType {
+    /// One value.
+    Scalar(Type),
+    /// Named fields.
+    Struct(StructId),
+    /// Elements of one type, counted from 0.
+    Array(ArrayId),
+}
+
+/// A field of a struct.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldDef {
+    /// Name, unique in its struct.
+    pub name: String,
+    /// Type.
+    pub ty: MemType,
+}
+
+/// A struct type.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StructDef {
+    /// Name, unique in its table.
+    pub name: String,
+    /// Fields in memory order.
+    pub fields: Vec<FieldDef>,
+}
+
+impl StructDef {
+    /// Position of the field with exactly this name.
+    pub fn field(&self, name: &str) -> Option<u32> {
+        self.fields
+            .iter()
+            .position(|field| field.name == name)
+            .map(|i| i as u32)
+    }
+}
+
+/// An array type: `len` elements of `element`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ArrayType {
+    /// Element type.
+    pub element: MemType,
+    /// Number of elements; at least 1.
+    pub len: u32,
+}
+
+/// Owns the struct and array types of a module. Arrays are interned, so equal types are equal ids.
+/// A type only refers to types that stand before it, so types cannot contain themselves.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TypeTable {
+    /// Structs, in order of definition.
+    pub structs: PrimaryMap<StructId, StructDef>,
+    arrays: PrimaryMap<ArrayId, ArrayType>,
+}
+
+impl TypeTable {
+    /// The id of the array type, made on first use.
+    pub fn array(&mut self, element: MemType, len: u32) -> ArrayId {
+        let wanted = ArrayType { element, len };
+        let found = self
+            .arrays
+            .iter()
+            .find(|(_, array)| **array == wanted)
+            .map(|(id, _)| id);
+        found.unwrap_or_else(|| self.arrays.push(wanted))
+    }
+
+    /// The array type of an id.
+    pub fn array_type(&self, id: ArrayId) -> ArrayType {
+        self.arrays[id]
+    }
+
+    /// All array types, in order of first use.
+    pub fn arrays(&self) -> impl Iterator<Item = ArrayType> + '_ {
+        self.arrays.values().copied()
+    }
+
+    /// The struct with this name.
+    pub fn struct_named(&self, name: &str) -> Option<StructId> {
+        self.structs
+            .iter()
+            .find(|(_, def)| def.name == name)
+            .map(|(id, _)| id)
+    }
+
+    /// Adds a struct. The name must be new and field types must already be in the table.
+    pub fn add_struct(&mut self, name: impl Into<String>, fields: Vec<FieldDef>) -> StructId {
+        self.structs.push(StructDef {
+            name: name.into(),
+            fields,
+        })
+    }
+}
