@@ -72,6 +72,8 @@ codes! {
     E5001 Error "XML is malformed";
     E5002 Error "file is not an L5X export";
     E5003 Error "rung text does not follow the rung grammar";
+    E5004 Error "nesting is too deep";
+    E5005 Error "number does not fit 64 bits";
 }
 
 impl Code {
