@@ -24,6 +24,20 @@ impl Scalar {
     pub fn signed(self) -> i64 {
         self.ty.signed(self.bits)
     }
+
+    /// Reads a value from the bytes of a region.
+    pub fn read(bytes: &[u8], offset: usize, ty: Type) -> Self {
+        let width = ty.bytes() as usize;
+        let mut buffer = [0; 8];
+        buffer[..width].copy_from_slice(&bytes[offset..offset + width]);
+        Self::new(ty, u64::from_le_bytes(buffer))
+    }
+
+    /// Writes the value into the bytes of a region.
+    pub fn write(self, bytes: &mut [u8], offset: usize) {
+        let width = self.ty.bytes() as usize;
+        bytes[offset..offset + width].copy_from_slice(&self.bits.to_le_bytes()[..width]);
+    }
 }
 
 /// Bytes of a region in the layout of its struct.
@@ -58,12 +72,12 @@ impl Image {
 
     /// The value of type `ty` at a byte offset.
     pub fn get(&self, offset: u64, ty: Type) -> Scalar {
-        Scalar::new(ty, read_bits(&self.bytes, offset as usize, ty))
+        Scalar::read(&self.bytes, offset as usize, ty)
     }
 
     /// Sets the value at a byte offset.
     pub fn set(&mut self, offset: u64, value: Scalar) {
-        write_bits(&mut self.bytes, offset as usize, value);
+        value.write(&mut self.bytes, offset as usize);
     }
 
     /// Sets the value at a static place of the region; bits of integers included.
@@ -101,16 +115,4 @@ impl Image {
         let value = self.get(offset, ty);
         bit.map_or(value, |bit| Scalar::new(Type::I1, value.bits >> bit))
     }
-}
-
-fn read_bits(bytes: &[u8], offset: usize, ty: Type) -> u64 {
-    let mut buffer = [0; 8];
-    let width = ty.bytes() as usize;
-    buffer[..width].copy_from_slice(&bytes[offset..offset + width]);
-    u64::from_le_bytes(buffer)
-}
-
-fn write_bits(bytes: &mut [u8], offset: usize, value: Scalar) {
-    let width = value.ty.bytes() as usize;
-    bytes[offset..offset + width].copy_from_slice(&value.bits.to_le_bytes()[..width]);
 }

@@ -10,9 +10,10 @@
 //! * **Memory** is reached through [`Place`]s only: a root plus `.field`, `[index]` and bit
 //!   projections. There are no pointers, so two places overlap only if one is a prefix of the
 //!   other, up to indices.
-//! * **Every operation is total**; `ops.rs` is the one table that says what each computes. A
-//!   language error is an explicit branch to `fault`, so no back end decides what an error does.
-//!   A fault leaves state and outputs as they were before the scan.
+//! * **Every operation is total**; `ops.rs` is the one table that says what each computes, and
+//!   [`eval`] computes it, for the interpreter and for passes that fold. A language error is an
+//!   explicit branch to `fault`, so no back end decides what an error does. A fault leaves state
+//!   and outputs as they were before the scan.
 //! * **Time** is the parameter `now`, the same for a whole scan, in nanoseconds since the first.
 //!
 //! The text form ([`print_module`], [`parse_module`]) holds everything: printing is a fixed point
@@ -21,6 +22,7 @@
 
 pub mod analysis;
 mod builder;
+pub mod eval;
 mod fault;
 mod function;
 mod image;
