@@ -1,1 +1,130 @@
-//! placeholder
+//! Makes verified modules simpler without changing what they do.
+//!
+//! A pass is a row of [`PASSES`]; a pipeline is a list of names. Every pass takes a module that
+//! keeps the verifier's rules and leaves one, is deterministic, needs no recursion on what users
+//! write, and takes time near-linear in the size of the module. Passes know no source language and
+//! no target: what a target needs is which passes its pipeline lists.
+//!
+//! To add a pass: its file, which begins with what it guarantees; its row; its place in the
+//! pipelines; tests.
+
+mod functions;
+mod inline;
+
+use iecc_ir::Module;
+use std::fmt;
+
+/// A row of the table of passes.
+#[derive(Debug, Clone, Copy)]
+pub struct Pass {
+    /// Name on the command line and in pipelines.
+    pub name: &'static str,
+    /// What it does, in one line.
+    pub what: &'static str,
+    /// Why it stands where it stands in the pipelines.
+    pub why_here: &'static str,
+    run: fn(&mut Module),
+}
+
+/// Every pass.
+pub const PASSES: &[Pass] = &[
+    Pass {
+        name: "inline",
+        what: "puts the body of every function in place of its calls",
+        why_here: "first: the other passes look at one function at a time",
+        run: inline::inline,
+    },
+    Pass {
+        name: "inline_small",
+        what: "puts small functions, and those called once, in place of their calls",
+        why_here: "first, instead of inline where code size counts",
+        run: inline::inline_small,
+    },
+];
+
+/// For engines that run instructions one after the other. Keeps the layout of all regions.
+pub const SOFTWARE: &[&str] = &["inline_small"];
+
+/// For hardware: ends in a scan of one block without calls, if nothing in the program loops or
+/// faults. The layout of the state may change.
+pub const HARDWARE: &[&str] = &["inline"];
+
+/// There is no pass of this name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnknownPass(pub String);
+
+impl fmt::Display for UnknownPass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<&str> = PASSES.iter().map(|pass| pass.name).collect();
+        write!(
+            f,
+            "there is no pass {:?}; there are {}",
+            self.0,
+            names.join(", ")
+        )
+    }
+}
+
+impl std::error::Error for UnknownPass {}
+
+/// The pass of this name.
+///
+/// # Errors
+/// There is none.
+pub fn find(name: &str) -> Result<&'static Pass, UnknownPass> {
+    PASSES
+        .iter()
+        .find(|pass| pass.name == name)
+        .ok_or_else(|| UnknownPass(name.to_owned()))
+}
+
+/// Runs one pass over a module that keeps the verifier's rules.
+///
+/// # Errors
+/// There is no such pass; the module is as before.
+pub fn run(name: &str, module: &mut Module) -> Result<(), UnknownPass> {
+    (find(name)?.run)(module);
+    Ok(())
+}
+
+/// Runs passes in order and shows the module to `observer` after each, with the pass's name. Debug
+/// builds verify there too.
+///
+/// # Errors
+/// One of the names is no pass; the module is as before.
+pub fn run_pipeline(
+    module: &mut Module,
+    names: &[&str],
+    observer: &mut dyn FnMut(&str, &Module),
+) -> Result<(), UnknownPass> {
+    let passes = names
+        .iter()
+        .map(|name| find(name))
+        .collect::<Result<Vec<_>, _>>()?;
+    for pass in passes {
+        (pass.run)(module);
+        debug_assert_eq!(iecc_ir::verify(module).err(), None, "after {}", pass.name);
+        observer(pass.name, module);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_pipelines_list_passes() {
+        for (index, pass) in PASSES.iter().enumerate() {
+            assert!(
+                PASSES[..index].iter().all(|other| other.name != pass.name),
+                "{}",
+                pass.name
+            );
+        }
+        for name in SOFTWARE.iter().chain(HARDWARE) {
+            assert!(find(name).is_ok(), "{name}");
+        }
+        assert_eq!(find("inlin").unwrap_err(), UnknownPass("inlin".to_owned()));
+    }
+}

@@ -26,7 +26,8 @@ impl Cfg {
                 continue;
             };
             for target in terminator.targets() {
-                if !cfg.successors[block].contains(&target.block) {
+                // All jumps of a block are entered in one go, so a second one finds it last.
+                if cfg.predecessors[target.block].last() != Some(&block) {
                     cfg.successors[block].push(target.block);
                     cfg.predecessors[target.block].push(block);
                 }
@@ -40,16 +41,18 @@ impl Cfg {
         let Some(&entry) = func.layout.first() else {
             return;
         };
-        let mut stack = vec![(entry, 0)];
+        // Last successor first, so that in the reversed order the first one comes first.
+        let mut stack = vec![(entry, self.successors[entry].len())];
         self.reachable.insert(entry);
-        while let Some((block, next)) = stack.pop() {
-            if let Some(&successor) = self.successors[block].get(next) {
-                stack.push((block, next + 1));
-                if self.reachable.insert(successor) {
-                    stack.push((successor, 0));
-                }
-            } else {
+        while let Some((block, left)) = stack.pop() {
+            if left == 0 {
                 self.order.push(block);
+                continue;
+            }
+            stack.push((block, left - 1));
+            let successor = self.successors[block][left - 1];
+            if self.reachable.insert(successor) {
+                stack.push((successor, self.successors[successor].len()));
             }
         }
         self.order.reverse();

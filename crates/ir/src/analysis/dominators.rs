@@ -14,6 +14,10 @@ pub struct Dominators {
     position: SecondaryMap<Block, u32>,
     /// Immediate dominator by position; the entry's is itself.
     immediate: Vec<u32>,
+    /// Numbers of entering and leaving each block, by position, in a walk over the tree: a block
+    /// dominates those whose interval lies in its own. Chains of thousands of blocks are common,
+    /// so climbing them for every question would be quadratic.
+    interval: Vec<(u32, u32)>,
     order: Vec<Block>,
 }
 
@@ -29,13 +33,34 @@ impl Dominators {
         let mut dominators = Self {
             position,
             immediate,
+            interval: Vec::new(),
             order,
         };
         if !dominators.order.is_empty() {
             dominators.immediate[0] = 0;
             while dominators.improve(cfg) {}
         }
+        dominators.number();
         dominators
+    }
+
+    /// A block stands behind its immediate dominator in reverse postorder. So sizes of subtrees
+    /// add up backwards, and forwards each block takes its share of the dominator's interval.
+    fn number(&mut self) {
+        let count = self.order.len();
+        let mut size = vec![1; count];
+        for index in (1..count).rev() {
+            size[self.immediate[index] as usize] += size[index];
+        }
+        let mut free = vec![0; count];
+        self.interval = vec![(0, 0); count];
+        for index in 0..count {
+            let dominator = self.immediate[index] as usize;
+            let start = if index == 0 { 0 } else { free[dominator] };
+            free[dominator] = start + size[index];
+            free[index] = start + 1;
+            self.interval[index] = (start, start + size[index]);
+        }
     }
 
     fn improve(&mut self, cfg: &Cfg) -> bool {
@@ -77,14 +102,12 @@ impl Dominators {
 
     /// Whether every way from the entry to `b` passes `a`. A reachable block dominates itself.
     pub fn dominates(&self, a: Block, b: Block) -> bool {
-        let (a, mut b) = (self.position[a], self.position[b]);
+        let (a, b) = (self.position[a], self.position[b]);
         if a == UNREACHABLE || b == UNREACHABLE {
             return false;
         }
-        while b > a {
-            b = self.immediate[b as usize];
-        }
-        a == b
+        let (start, end) = self.interval[a as usize];
+        (start..end).contains(&self.interval[b as usize].0)
     }
 
     /// The closest block that dominates both reachable blocks.

@@ -1,0 +1,4 @@
+//! Every pass on small modules, worked out by hand.
+
+mod check;
+mod inline;
