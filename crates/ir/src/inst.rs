@@ -77,8 +77,9 @@ pub enum InstData {
         ty: Type,
     },
     /// `step unit`: how many boundaries of `unit_ns` lie between the time of the scan before this
-    /// one and `now`, computed and bounded like `elapsed`; 0 in the first scan. Passes for hardware put it in place of
-    /// `elapsed`; front ends do not use it.
+    /// one and `now`, computed and bounded like `elapsed`; 0 in the first scan. A scan that
+    /// faulted does not count as a scan. Passes for hardware put it in place of `elapsed`; front
+    /// ends do not use it.
     Step {
         /// Length of the unit in nanoseconds, at least 1.
         unit_ns: u64,
@@ -89,7 +90,8 @@ pub enum InstData {
     Call {
         /// The callee.
         func: FuncId,
-        /// Places for the reference parameters.
+        /// Places for the reference parameters. Their indices are read here, once; where one is
+        /// out of bounds, every load through the reference gives 0 and every store does nothing.
         refs: Vec<Place>,
         /// Values for the parameters of the entry block.
         args: Vec<Value>,
