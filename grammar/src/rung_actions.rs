@@ -1,8 +1,8 @@
 //! What the productions of `rung.lalrpop` build, and the mistakes only visible while building.
 
 use iecc_ast::rung::{
-    BinaryOp, Element, Expr, ExprKind, IntLiteral, IntSuffix, Leg, Member, OperandKind, Radix,
-    Reference, UnaryOp,
+    BinaryOp, Element, Expr, ExprKind, IntLiteral, IntSuffix, Leg, Member, Operand, OperandKind,
+    Radix, Reference, UnaryOp,
 };
 use iecc_ast::{Name, RealText, StringLiteral};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
@@ -44,6 +44,16 @@ impl Builder<'_> {
             (None | Some(_), _) => self.span(at, at),
         };
         Leg { elements, span }
+    }
+
+    /// Between `()` stands no operand at all, rather than one that is left out.
+    pub(crate) fn operands(&self, mut operands: Vec<Operand>) -> Vec<Operand> {
+        if let [only] = &operands[..]
+            && only.kind == OperandKind::Empty
+        {
+            operands.clear();
+        }
+        operands
     }
 
     pub(crate) fn words(&self, first: &str, rest: Vec<&str>) -> OperandKind {

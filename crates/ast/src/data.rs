@@ -20,6 +20,8 @@ pub struct Initial {
     pub hex: Option<Spanned<Vec<u8>>>,
     /// The attributes of `Message`, `Axis`, `Alarm…` and similar data, with the format's name.
     pub parameters: Option<Parameters>,
+    /// Where force values stand, which take effect only when forces are enabled; not read.
+    pub forces: Option<Span>,
 }
 
 /// Data that is a list of attributes (`MessageParameters`, `AlarmDigitalParameters`, …).

@@ -5,7 +5,7 @@
 //! exported, `Use="Context"` on what it refers to) has the same shape with most lists short.
 
 use crate::rung;
-use crate::{Initial, Name};
+use crate::{Initial, Name, Parameters};
 use iecc_source::{MappedText, Span};
 
 /// A whole export.
@@ -192,6 +192,8 @@ pub struct Tag {
     pub usage: Usage,
     /// Safety-rated (`Class="Safety"`).
     pub safety: bool,
+    /// For a produced or consumed tag: the settings of its connection.
+    pub connection: Option<Parameters>,
     /// What it is.
     pub description: Description,
     /// Comments on parts of the tag.
@@ -387,7 +389,7 @@ pub enum RoutineBody {
     /// Relay ladder; no rungs where the file leaves the content out.
     Ladder(Vec<Rung>),
     /// Structured text, line by line.
-    StructuredText(Vec<StLine>),
+    StructuredText(StContent),
     /// A function block diagram, not read further.
     FunctionBlock(Span),
     /// A sequential function chart, not read further.
@@ -486,6 +488,17 @@ impl RungKind {
             Self::PendingInsert | Self::PendingReplace => false,
         }
     }
+}
+
+/// The versions of a structured text routine. Without pending edits there is the original only.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StContent {
+    /// The accepted text; it runs unless test edits are active.
+    pub original: Vec<StLine>,
+    /// The text that runs while the program's test edits are active.
+    pub test_edits: Option<Vec<StLine>>,
+    /// A text that was not accepted yet; it never runs.
+    pub pending_edits: Option<Vec<StLine>>,
 }
 
 /// A line of structured text.

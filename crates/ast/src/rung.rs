@@ -69,6 +69,8 @@ pub struct Operand {
 /// The forms of an operand.
 #[derive(Debug, Clone, PartialEq)]
 pub enum OperandKind {
+    /// Nothing between two commas, as in `GSV(WallClockTime,,DateTime,now[0])`.
+    Empty,
     /// `?`: the value lives in the backing tag (`TON(t,?,?)`).
     InTag,
     /// A value, a tag, a name or an expression. Which of these a lone name is (tag, routine,
@@ -348,7 +350,7 @@ impl Operand {
     pub fn as_name(&self) -> Option<&Name> {
         match &self.kind {
             OperandKind::Expr(expr) => expr.as_reference().and_then(Reference::as_name),
-            OperandKind::InTag | OperandKind::Words(_) => None,
+            OperandKind::Empty | OperandKind::InTag | OperandKind::Words(_) => None,
         }
     }
 }

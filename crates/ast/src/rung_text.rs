@@ -62,6 +62,7 @@ impl Display for Instruction {
 impl Display for Operand {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match &self.kind {
+            OperandKind::Empty => Ok(()),
             OperandKind::InTag => f.write_char('?'),
             OperandKind::Expr(expr) => expr.fmt(f),
             OperandKind::Words(words) => f.write_str(words),

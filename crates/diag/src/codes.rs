@@ -74,6 +74,8 @@ codes! {
     E5003 Error "rung text does not follow the rung grammar";
     E5004 Error "nesting is too deep";
     E5005 Error "number does not fit 64 bits";
+    E5006 Error "attribute or element is missing or malformed";
+    E5007 Error "tag data is malformed";
 }
 
 impl Code {

@@ -36,7 +36,9 @@ fn operand(text: &str) -> Operand {
 fn expr(text: &str) -> Expr {
     match operand(text).kind {
         OperandKind::Expr(expr) => expr,
-        other @ (OperandKind::InTag | OperandKind::Words(_)) => panic!("{text}: {other:?}"),
+        other @ (OperandKind::Empty | OperandKind::InTag | OperandKind::Words(_)) => {
+            panic!("{text}: {other:?}")
+        }
     }
 }
 
@@ -191,6 +193,17 @@ fn operands_may_be_question_marks_and_free_text() {
 }
 
 #[test]
+fn operands_may_be_left_out() {
+    let operands = |text: &str| rung(text).instructions()[0].operands.clone();
+    assert!(operands("NOP();").is_empty());
+    let gsv = operands("GSV(WallClockTime,,DateTime, );");
+    assert_eq!(gsv[1].kind, OperandKind::Empty);
+    assert_eq!(gsv[1].span.range(), 1018..1018);
+    assert_eq!(gsv[3].kind, OperandKind::Empty);
+    assert_eq!(gsv.len(), 4);
+}
+
+#[test]
 fn spans_are_places_in_the_file() {
     let rung = rung("XIC(a)CPT( b , (c + 1) );");
     assert_eq!(rung.span.range(), 1000..1025);
@@ -222,8 +235,8 @@ fn messages_say_what_was_found_and_expected() {
         e5003("text behind the `;` that ends the rung", "XIC")
     );
     assert_eq!(
-        message("MOV(1,);"),
-        e5003("found `)`, expected an operand", ")")
+        message("MOV(1,]);"),
+        e5003("found `]`, expected an operand, `)` or `,`", "]")
     );
     assert_eq!(
         message("[XIC(a);").1,

@@ -1,0 +1,66 @@
+//! What must hold for any input at all. Normal tests call these with fixed seeds, fuzz targets
+//! with whatever they find.
+
+use iecc_ast::rung::Rung;
+use iecc_diag::{Code, Diagnostics};
+use iecc_source::{FileId, MappedText};
+
+/// Reading an export gives a project or a message, and every place lies in the text.
+pub fn l5x(text: &str) {
+    let mut diagnostics = Diagnostics::new();
+    let project = iecc_l5x::read(FileId::from_index(0), text, &mut diagnostics);
+    assert!(project.is_some() || diagnostics.has_errors());
+    for diagnostic in &diagnostics {
+        let labels = diagnostic.primary.iter().chain(&diagnostic.secondary);
+        labels.for_each(|label| assert!(text.get(label.span.range()).is_some(), "{diagnostic:?}"));
+        let unique = [Code::E5001, Code::E5002].contains(&diagnostic.code);
+        assert!(
+            !unique || diagnostics.len() == 1,
+            "one message for a file that is no L5X"
+        );
+    }
+}
+
+/// Parsing a rung gives a tree that prints to a text of the same tree, or messages with a place
+/// in the text. Says which.
+pub fn rung(text: &str) -> bool {
+    let mut diagnostics = Diagnostics::new();
+    let Some(rung) = parse(text, &mut diagnostics) else {
+        assert!(diagnostics.has_errors());
+        for diagnostic in &diagnostics {
+            let place = diagnostic.primary.as_ref().expect("a place").span;
+            assert!(text.get(place.range()).is_some(), "{diagnostic:?}");
+        }
+        return false;
+    };
+    assert!(diagnostics.is_empty());
+    prints_to_itself(&rung);
+    true
+}
+
+/// The canonical text of a rung parses to the same tree and is its own canonical text.
+pub fn prints_to_itself(rung: &Rung) {
+    let printed = rung.to_string();
+    let again = parse(&printed, &mut Diagnostics::new());
+    let again = again.unwrap_or_else(|| panic!("printed text does not parse: {printed}"));
+    assert_eq!(without_spans(&again), without_spans(rung), "{printed}");
+    assert_eq!(again.to_string(), printed);
+}
+
+fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Rung> {
+    iecc_grammar::parse_rung(
+        &MappedText::verbatim(FileId::from_index(0), 0, text),
+        diagnostics,
+    )
+}
+
+/// The tree as `{:?}` shows it, with its places left out.
+fn without_spans(rung: &Rung) -> String {
+    let text = format!("{rung:?}");
+    let mut parts = text.split("Span {");
+    let mut kept = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        kept.push_str(part.split_once('}').expect("a span ends").1);
+    }
+    kept
+}
