@@ -266,9 +266,11 @@ fn callees(module: &Module, id: FuncId) -> Vec<FuncId> {
         .iter()
         .flat_map(|&block| &func.block(block).insts);
     let called: BTreeSet<FuncId> = insts
-        .filter_map(|&inst| match func.inst(inst) {
-            InstData::Call { func, .. } if module.funcs.get(*func).is_some() => Some(*func),
-            _ => None,
+        .filter_map(|&inst| {
+            let InstData::Call { func, .. } = func.inst(inst) else {
+                return None;
+            };
+            module.funcs.get(*func).is_some().then_some(*func)
         })
         .collect();
     called.into_iter().collect()

@@ -8,8 +8,24 @@
 //! To add a pass: its file, which begins with what it guarantees; its row; its place in the
 //! pipelines; tests.
 
+#![allow(
+    clippy::wildcard_enum_match_arm,
+    reason = "rewriting picks a few shapes; every other one stays as it is"
+)]
+
+mod early_compare;
+mod edit;
 mod functions;
 mod inline;
+mod range;
+mod range_fold;
+mod scan_form;
+mod settings;
+mod state;
+mod step_time;
+
+pub use range::ranges;
+pub use settings::Settings;
 
 use iecc_ir::Module;
 use std::fmt;
@@ -23,7 +39,7 @@ pub struct Pass {
     pub what: &'static str,
     /// Why it stands where it stands in the pipelines.
     pub why_here: &'static str,
-    run: fn(&mut Module),
+    run: fn(&mut Module, &Settings),
 }
 
 /// Every pass.
@@ -32,13 +48,37 @@ pub const PASSES: &[Pass] = &[
         name: "inline",
         what: "puts the body of every function in place of its calls",
         why_here: "first: the other passes look at one function at a time",
-        run: inline::inline,
+        run: |module, _| inline::inline(module),
     },
     Pass {
         name: "inline_small",
         what: "puts small functions, and those called once, in place of their calls",
         why_here: "first, instead of inline where code size counts",
-        run: inline::inline_small,
+        run: |module, _| inline::inline_small(module),
+    },
+    Pass {
+        name: "step_time",
+        what: "counts the steps of the scan instead of looking at the clock",
+        why_here: "before promotion, which then turns its counters into values",
+        run: |module, _| step_time::run(module),
+    },
+    Pass {
+        name: "range_fold",
+        what: "decides and weakens comparisons by what values can be",
+        why_here: "when the scan is one block, so that ranges are known",
+        run: range_fold::run,
+    },
+    Pass {
+        name: "state",
+        what: "drops state that is constant, unused, or kept twice",
+        why_here: "after range_fold and cse, which show what is constant and equal",
+        run: state::run,
+    },
+    Pass {
+        name: "early_compare",
+        what: "keeps `counter == constant` as a bit of its own, ready before it is needed",
+        why_here: "last of all: its bits are more state",
+        run: early_compare::run,
     },
 ];
 
@@ -82,8 +122,8 @@ pub fn find(name: &str) -> Result<&'static Pass, UnknownPass> {
 ///
 /// # Errors
 /// There is no such pass; the module is as before.
-pub fn run(name: &str, module: &mut Module) -> Result<(), UnknownPass> {
-    (find(name)?.run)(module);
+pub fn run(name: &str, module: &mut Module, settings: &Settings) -> Result<(), UnknownPass> {
+    (find(name)?.run)(module, settings);
     Ok(())
 }
 
@@ -95,6 +135,7 @@ pub fn run(name: &str, module: &mut Module) -> Result<(), UnknownPass> {
 pub fn run_pipeline(
     module: &mut Module,
     names: &[&str],
+    settings: &Settings,
     observer: &mut dyn FnMut(&str, &Module),
 ) -> Result<(), UnknownPass> {
     let passes = names
@@ -102,7 +143,7 @@ pub fn run_pipeline(
         .map(|name| find(name))
         .collect::<Result<Vec<_>, _>>()?;
     for pass in passes {
-        (pass.run)(module);
+        (pass.run)(module, settings);
         debug_assert_eq!(iecc_ir::verify(module).err(), None, "after {}", pass.name);
         observer(pass.name, module);
     }

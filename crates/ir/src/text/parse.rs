@@ -598,14 +598,10 @@ impl Parser {
             body.func.set_terminator(block, terminator, origin);
             return Ok(());
         }
-        let mut results = Vec::new();
-        while word != "store" && word != "call" {
-            results.push(self.typed_value()?);
-            if !self.accept(",") {
-                self.expect("=")?;
-                break;
-            }
-        }
+        let results = match word.as_str() {
+            "store" | "call" => Vec::new(),
+            _ => self.results()?,
+        };
         let types: Vec<Type> = results.iter().map(|(_, ty)| *ty).collect();
         let data = self.inst(body, &types)?;
         let origin = self.origin(body)?;
@@ -615,6 +611,16 @@ impl Parser {
             .iter()
             .zip(values)
             .try_for_each(|(&(number, _), value)| body.define(self, number, value))
+    }
+
+    /// `v1: i32, v2: i1 =`
+    fn results(&mut self) -> Result<Vec<(u32, Type)>> {
+        let mut results = vec![self.typed_value()?];
+        while self.accept(",") {
+            results.push(self.typed_value()?);
+        }
+        self.expect("=")?;
+        Ok(results)
     }
 
     fn origin(&mut self, body: &Body<'_>) -> Result<Option<Origin>> {

@@ -1,7 +1,7 @@
 //! One check for every pass: text before, text after; both keep the verifier's rules.
 
 use iecc_ir::{Module, parse_module, print_module, verify};
-use iecc_passes::run;
+use iecc_passes::{Settings, run};
 
 /// Parses and verifies a module.
 pub(crate) fn module(text: &str) -> Module {
@@ -14,7 +14,7 @@ pub(crate) fn module(text: &str) -> Module {
 pub(crate) fn optimised(passes: &[&str], text: &str) -> Module {
     let mut module = module(text);
     for pass in passes {
-        run(pass, &mut module).unwrap();
+        run(pass, &mut module, &Settings::default()).unwrap();
         let text = print_module(&module);
         assert_eq!(verify(&module).err(), None, "after {pass}:\n{text}");
     }

@@ -1,0 +1,388 @@
+//! Range analysis: what state leaves and values of a scan can hold.
+//!
+//! The result is a fixpoint from the initial image over one scan with any inputs, for scans in
+//! normal form (`scan_form`); for others nothing is claimed. Integers are intervals. A state leaf
+//! is also tracked apart for each value of the flags beside it in the same struct, because that is
+//! what bounds a timer: while DN is 0, ACC is below PRE. Growth jumps to the next threshold, a
+//! constant of the leaf's own program, so the fixpoint comes quickly and stays exact where it
+//! matters.
+//!
+//! `elapsed` and `now` are any number; `step` is at most what the caller says a scan can bring.
+
+mod case;
+mod interval;
+
+use crate::scan_form::{Leaf, ScanForm};
+use case::{Case, DEPTH};
+use cranelift_entity::SecondaryMap;
+use iecc_ir::analysis::{Range, Ranges};
+use iecc_ir::{CompareOp, Function, InstData, Module, Projection, Root, Type, Value};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Rounds before growth jumps to thresholds, and before it jumps to the whole type.
+const EXACT_ROUNDS: u32 = 2;
+const THRESHOLD_ROUNDS: u32 = 48;
+/// How many instructions behind a leaf are searched for thresholds.
+const CONE: usize = 400;
+/// How deep an integer select is looked into when no assumption is made.
+const SELECT_DEPTH: u32 = 8;
+
+/// The ranges of a module's scan. `max_step(unit_ns)` is the largest value `step` can have.
+pub fn ranges(module: &Module, max_step: &dyn Fn(u64) -> u64) -> Ranges {
+    Analysis::of(module, max_step).map_or_else(Ranges::default, Analysis::result)
+}
+
+/// What is known of a leaf at scan boundaries.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct LeafState {
+    whole: Range,
+    /// By flag beside the leaf: what the leaf holds while the flag is 0 and while it is 1.
+    by_flag: BTreeMap<usize, [Option<Range>; 2]>,
+}
+
+impl LeafState {
+    /// The range while these flags have these values; `None` if they never do.
+    fn given(&self, flags: &BTreeMap<usize, bool>) -> Option<Range> {
+        let mut range = self.whole;
+        for (flag, by_value) in &self.by_flag {
+            if let Some(&value) = flags.get(flag) {
+                range = range.intersection(by_value[usize::from(value)]?)?;
+            }
+        }
+        Some(range)
+    }
+}
+
+/// The fixpoint; solved when given out.
+pub(crate) struct Analysis<'m> {
+    func: &'m Function,
+    form: ScanForm,
+    max_step: &'m dyn Fn(u64) -> u64,
+    leaf_index: SecondaryMap<Value, Option<u32>>,
+    base: SecondaryMap<Value, Option<Range>>,
+    state: Vec<LeafState>,
+    thresholds: Vec<Vec<i64>>,
+}
+
+impl<'m> Analysis<'m> {
+    /// The solved analysis of a scan in normal form.
+    pub(crate) fn of(module: &'m Module, max_step: &'m dyn Fn(u64) -> u64) -> Option<Self> {
+        let form = ScanForm::of(module)?;
+        let mut analysis = Self::new(&module.funcs[module.scan], form, max_step);
+        analysis.solve();
+        Some(analysis)
+    }
+
+    /// The registers of the scan.
+    pub(crate) fn form(&self) -> &ScanForm {
+        &self.form
+    }
+
+    /// The flag beside a leaf that says whether `x op k`, with the value it has then; x is the load
+    /// of the leaf.
+    pub(crate) fn flag_that_decides(
+        &self,
+        op: CompareOp,
+        x: Value,
+        k: i64,
+    ) -> Option<(Value, bool)> {
+        let leaf = self.leaf_of(x)?;
+        let decided = |range: Option<Range>| {
+            range.and_then(|range| interval::compare(op, range, Range::constant(k)).as_constant())
+        };
+        self.state[leaf]
+            .by_flag
+            .iter()
+            .find_map(|(&flag, by_value)| {
+                let load = self.form.leaves[flag].load?;
+                match by_value.map(decided) {
+                    [Some(0), Some(1)] => Some((load, true)),
+                    [Some(1), Some(0)] => Some((load, false)),
+                    _ => None,
+                }
+            })
+    }
+
+    fn new(func: &'m Function, form: ScanForm, max_step: &'m dyn Fn(u64) -> u64) -> Self {
+        let mut leaf_index = SecondaryMap::new();
+        for (index, leaf) in form.leaves.iter().enumerate() {
+            if let Some(load) = leaf.load {
+                leaf_index[load] = Some(index as u32);
+            }
+        }
+        let flags = flags_beside(&form.leaves);
+        let state = form
+            .leaves
+            .iter()
+            .zip(&flags)
+            .map(|(leaf, flags)| initial(&form.leaves, leaf, flags))
+            .collect();
+        let thresholds = form.leaves.iter().zip(&flags).map(|(leaf, flags)| {
+            let beside = flags.iter().map(|&flag| &form.leaves[flag]);
+            let start = |value| leaf_index[value].map(|index: u32| &form.leaves[index as usize]);
+            thresholds(func, &start, std::iter::once(leaf).chain(beside))
+        });
+        let thresholds = thresholds.collect();
+        Self {
+            func,
+            form,
+            max_step,
+            leaf_index,
+            base: SecondaryMap::new(),
+            state,
+            thresholds,
+        }
+    }
+
+    /// The range of a value without assumptions.
+    pub(crate) fn base(&self, value: Value) -> Range {
+        self.base[value].unwrap_or_else(|| Range::of_type(self.func.value_type(value)))
+    }
+
+    /// The index of the leaf whose load a value is.
+    pub(crate) fn leaf_of(&self, value: Value) -> Option<usize> {
+        self.leaf_index[value].map(|index| index as usize)
+    }
+
+    /// The leaf index of a value that is the load of an `i1`.
+    fn flag_of(&self, value: Value) -> Option<usize> {
+        self.leaf_of(value)
+            .filter(|&leaf| self.form.leaves[leaf].ty == Type::I1)
+    }
+
+    fn solve(&mut self) {
+        let mut round = 0;
+        loop {
+            self.compute_base();
+            let mut changed = false;
+            for index in 0..self.state.len() {
+                changed |= self.grow(index, round);
+            }
+            if !changed {
+                return;
+            }
+            round += 1;
+        }
+    }
+
+    /// Ranges of all values from the current state, without assumptions.
+    fn compute_base(&mut self) {
+        self.base.clear();
+        let insts = &self.func.block(self.form.block).insts;
+        for &inst in insts {
+            let &[value] = self.func.results_of(inst) else {
+                continue;
+            };
+            let ty = self.func.value_type(value);
+            if ty.is_int() {
+                let range = self.transfer(self.func.inst(inst), value, ty);
+                self.base[value] = Some(range);
+            }
+        }
+    }
+
+    fn transfer(&self, inst: &InstData, value: Value, ty: Type) -> Range {
+        match inst {
+            InstData::Const { bits, .. } => Range::of_bits(ty, *bits),
+            InstData::Load { place } if place.root == Root::State => self
+                .leaf_of(value)
+                .map_or(Range::of_type(ty), |leaf| self.state[leaf].whole),
+            InstData::Step { unit_ns, .. } => {
+                let top = i64::try_from((self.max_step)(*unit_ns)).unwrap_or(i64::MAX);
+                Range::new(0, top.min(Range::of_type(ty).hi))
+            }
+            InstData::Now => Range::new(0, i64::MAX),
+            // Only here do paths matter; a flag's own value needs no context.
+            InstData::Select { .. } if ty != Type::I1 => Case::new(self)
+                .range(value, SELECT_DEPTH)
+                .unwrap_or(Range::of_type(ty)),
+            InstData::Compare { args, .. } if self.func.value_type(args[0]).is_float() => {
+                Range::of_type(ty)
+            }
+            InstData::Convert { arg, .. } if self.func.value_type(*arg).is_float() => {
+                Range::of_type(ty)
+            }
+            InstData::Unary { .. }
+            | InstData::Binary { .. }
+            | InstData::Compare { .. }
+            | InstData::Convert { .. } => Case::new(self)
+                .range(value, 1)
+                .unwrap_or(Range::of_type(ty)),
+            InstData::Select { .. } => Case::new(self)
+                .range(value, 1)
+                .unwrap_or(Range::of_type(ty)),
+            InstData::Load { .. }
+            | InstData::Store { .. }
+            | InstData::Elapsed { .. }
+            | InstData::Call { .. } => Range::of_type(ty),
+        }
+    }
+
+    /// Joins what one scan makes of a leaf into its state; whether that changed anything.
+    fn grow(&mut self, index: usize, round: u32) -> bool {
+        let leaf = &self.form.leaves[index];
+        let Some(next) = leaf.next.filter(|_| leaf.ty.is_int()) else {
+            return false;
+        };
+        let old = &self.state[index];
+        let mut new = old.clone();
+        for (&flag, by_value) in &mut new.by_flag {
+            for (before, after) in [(false, false), (false, true), (true, false), (true, true)] {
+                if old.by_flag[&flag][usize::from(before)].is_none() {
+                    continue;
+                }
+                let Some(range) = self.after_scan(next, flag, before, after) else {
+                    continue;
+                };
+                let kept = &mut by_value[usize::from(after)];
+                *kept = Some(self.widened(index, round, *kept, range));
+            }
+        }
+        new.whole = match new.by_flag.is_empty() {
+            true => self.widened(index, round, Some(old.whole), self.base(next)),
+            false => whole(&new.by_flag, old.whole),
+        };
+        let changed = new != *old;
+        self.state[index] = new;
+        changed
+    }
+
+    /// The range of `next` in scans that change the flag from `before` to `after`; `None` if there
+    /// are none.
+    fn after_scan(&self, next: Value, flag: usize, before: bool, after: bool) -> Option<Range> {
+        if !self.state[flag].whole.contains(i64::from(before)) {
+            return None;
+        }
+        let mut case = Case::new(self);
+        case.assume_flag(flag, before)?;
+        match self.form.leaves[flag].next {
+            Some(value) => case.assume(value, Range::constant(i64::from(after)))?,
+            None if before != after => return None,
+            None => {}
+        }
+        case.range(next, DEPTH)
+    }
+
+    /// The union of old and new; growth jumps to thresholds so that it ends.
+    fn widened(&self, index: usize, round: u32, old: Option<Range>, new: Range) -> Range {
+        let ty = Range::of_type(self.form.leaves[index].ty);
+        let Some(old) = old else { return new };
+        let union = old.union(new);
+        if union == old || round < EXACT_ROUNDS {
+            return union;
+        }
+        if round >= THRESHOLD_ROUNDS {
+            return ty;
+        }
+        let thresholds = &self.thresholds[index];
+        let above = thresholds
+            .iter()
+            .copied()
+            .find(|&t| t >= union.hi)
+            .unwrap_or(ty.hi)
+            .min(ty.hi);
+        let below = thresholds
+            .iter()
+            .rev()
+            .copied()
+            .find(|&t| t <= union.lo)
+            .unwrap_or(ty.lo)
+            .max(ty.lo);
+        Range::new(
+            if union.lo < old.lo { below } else { old.lo },
+            if union.hi > old.hi { above } else { old.hi },
+        )
+    }
+
+    fn result(self) -> Ranges {
+        let leaves = self.form.leaves.iter().zip(&self.state);
+        let state = leaves
+            .filter(|(leaf, _)| leaf.ty.is_int())
+            .map(|(leaf, state)| (leaf.place.clone(), state.whole))
+            .collect();
+        Ranges {
+            values: self.base,
+            state,
+        }
+    }
+}
+
+fn whole(by_flag: &BTreeMap<usize, [Option<Range>; 2]>, old: Range) -> Range {
+    let unions = by_flag.values().filter_map(|[no, yes]| match (no, yes) {
+        (Some(a), Some(b)) => Some(a.union(*b)),
+        (one, other) => one.or(*other),
+    });
+    unions
+        .reduce(|a, b| a.intersection(b).unwrap_or(a))
+        .unwrap_or(old)
+}
+
+/// For each integer leaf wider than a bit the indices of the `i1` leaves in the same struct.
+fn flags_beside(leaves: &[Leaf]) -> Vec<Vec<usize>> {
+    let mut by_parent: BTreeMap<&[Projection], Vec<usize>> = BTreeMap::new();
+    for (index, leaf) in leaves.iter().enumerate() {
+        if leaf.ty == Type::I1 {
+            by_parent.entry(parent(leaf)).or_default().push(index);
+        }
+    }
+    let beside = |leaf: &Leaf| match leaf.ty {
+        // The top level of the state is no unit of meaning; there may be thousands of flags.
+        Type::I8 | Type::I16 | Type::I32 | Type::I64 if leaf.place.path.len() > 1 => {
+            by_parent.get(parent(leaf)).cloned().unwrap_or_default()
+        }
+        _ => Vec::new(),
+    };
+    leaves.iter().map(beside).collect()
+}
+
+fn parent(leaf: &Leaf) -> &[Projection] {
+    &leaf.place.path[..leaf.place.path.len() - 1]
+}
+
+fn initial(leaves: &[Leaf], leaf: &Leaf, flags: &[usize]) -> LeafState {
+    if leaf.ty.is_float() {
+        return LeafState {
+            whole: Range::new(0, 0),
+            by_flag: BTreeMap::new(),
+        };
+    }
+    let start = Range::of_bits(leaf.ty, leaf.init);
+    let by_flag = flags.iter().map(|&flag| {
+        let mut by_value = [None; 2];
+        by_value[usize::from(leaves[flag].init == 1)] = Some(start);
+        (flag, by_value)
+    });
+    LeafState {
+        whole: start,
+        by_flag: by_flag.collect(),
+    }
+}
+
+/// The constants and initial values near a leaf's computation, each with its neighbours, ascending.
+/// `start` gives the leaf whose load a value is.
+fn thresholds<'l>(
+    func: &Function,
+    start: &dyn Fn(Value) -> Option<&'l Leaf>,
+    leaves: impl Iterator<Item = &'l Leaf>,
+) -> Vec<i64> {
+    let mut found = BTreeSet::from([0]);
+    let mut add = |ty: Type, bits| {
+        let k = ty.signed(bits);
+        found.extend([k.saturating_sub(1), k, k.saturating_add(1)]);
+    };
+    let mut queue: Vec<Value> = leaves.filter_map(|leaf| leaf.next).collect();
+    let mut seen: BTreeSet<Value> = queue.iter().copied().collect();
+    let mut next = 0;
+    while let Some(&value) = queue.get(next).filter(|_| next < CONE) {
+        next += 1;
+        if let Some(leaf) = start(value).filter(|leaf| leaf.ty.is_int() && leaf.ty != Type::I1) {
+            add(leaf.ty, leaf.init);
+        }
+        match func.def_inst(value) {
+            Some(InstData::Const { ty, bits }) if ty.is_int() && *ty != Type::I1 => add(*ty, *bits),
+            Some(inst) => queue.extend(inst.values().into_iter().filter(|v| seen.insert(*v))),
+            None => {}
+        }
+    }
+    found.into_iter().collect()
+}
