@@ -1,0 +1,262 @@
+//! Places become addresses.
+//!
+//! An index by value is compared with its bound and replaced by 0 when outside, so every address
+//! lies in its region whatever the program computes; whether all indices were inside decides if
+//! what is loaded counts and if a store happens. The same goes for a reference that stands for an
+//! element outside its array: it is passed as a null pointer, and the state takes its place.
+
+use super::{Translator, clif_type};
+use crate::context::ScanContext;
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, types};
+use iecc_ir::{ArrayId, Index, MemType, Place, Projection, Root, Type, Value};
+
+/// Where a place lies.
+pub(super) struct Address {
+    base: clif::Value,
+    offset: i32,
+    flags: MemFlagsData,
+    /// An `i8` that says whether the place exists; `None` if it always does.
+    pub(super) exists: Option<clif::Value>,
+    /// What lies there; for a bit, the integer that holds it.
+    ty: MemType,
+    bit: Option<Index>,
+}
+
+impl Translator<'_, '_> {
+    pub(super) fn address(&mut self, place: &Place) -> Address {
+        let root = self.program.module.root_type(self.func, place.root);
+        let mut address = self.root(place.root, root.expect("verified places have a root"));
+        for step in &place.path {
+            self.project(&mut address, *step);
+        }
+        if let Some(Index::Value(bit)) = address.bit {
+            let MemType::Scalar(ty) = address.ty else {
+                panic!("bits are in integers")
+            };
+            let inside = self.inside(bit, ty.bits());
+            self.require(&mut address, inside);
+        }
+        address
+    }
+
+    fn root(&mut self, root: Root, ty: MemType) -> Address {
+        let pointer = self.pointer;
+        let mut exists = None;
+        let (base, region) = match root {
+            Root::State => (self.state, self.regions.state),
+            Root::Input => {
+                let base = self.context_field(pointer, ScanContext::INPUTS);
+                (base, self.regions.input)
+            }
+            Root::Output => {
+                let base = self.context_field(pointer, ScanContext::OUTPUTS);
+                (base, self.regions.output)
+            }
+            Root::Ref(param) => {
+                let mut base = self.reference(param);
+                if self.facts.absent_refs.contains(param) {
+                    let present = self.ins().icmp_imm_s(IntCC::NotEqual, base, 0);
+                    // The element would lie in the state, so the state is large enough.
+                    let state = self.state;
+                    base = self.ins().select(present, base, state);
+                    exists = Some(present);
+                }
+                (base, self.regions.state)
+            }
+        };
+        let mut flags = self.flags(region);
+        if root == Root::Input {
+            flags = flags.with_readonly().with_can_move();
+        }
+        Address {
+            base,
+            offset: 0,
+            flags,
+            exists,
+            ty,
+            bit: None,
+        }
+    }
+
+    fn project(&mut self, address: &mut Address, step: Projection) {
+        let (types, layout) = (&self.program.module.types, self.program.layout);
+        match (address.ty, step) {
+            (MemType::Struct(id), Projection::Field(field)) => {
+                address.offset += layout.field_offset(id, field) as i32;
+                address.ty = types.structs[id].fields[field as usize].ty;
+            }
+            (MemType::Array(id), Projection::Index(index)) => self.element(address, id, index),
+            (MemType::Scalar(_), Projection::Bit(index)) => address.bit = Some(index),
+            (MemType::Struct(_) | MemType::Array(_) | MemType::Scalar(_), _) => {
+                panic!("verified places follow their types")
+            }
+        }
+    }
+
+    fn element(&mut self, address: &mut Address, id: ArrayId, index: Index) {
+        let (types, layout) = (&self.program.module.types, self.program.layout);
+        let array = types.array_type(id);
+        let size = layout.size(types, array.element);
+        address.ty = array.element;
+        match index {
+            Index::Const(index) => address.offset += (u64::from(index) * size) as i32,
+            Index::Value(index) => {
+                let inside = self.inside(index, array.len);
+                let index = self.value(index);
+                let zero = self.ins().iconst(types::I32, 0);
+                let index = self.ins().select(inside, index, zero);
+                let pointer = self.pointer;
+                let distance = match pointer {
+                    types::I32 => index,
+                    _ => self.ins().uextend(pointer, index),
+                };
+                let size = self.ins().iconst(pointer, size as i64);
+                let distance = self.ins().imul(distance, size);
+                address.base = self.ins().iadd(address.base, distance);
+                self.require(address, inside);
+            }
+        }
+    }
+
+    /// Read as unsigned, negative indices are above every bound.
+    fn inside(&mut self, index: Value, len: u32) -> clif::Value {
+        let bound = i64::from(len.min(1 << 31));
+        let index = self.value(index);
+        self.ins().icmp_imm_u(IntCC::UnsignedLessThan, index, bound)
+    }
+
+    fn require(&mut self, address: &mut Address, condition: clif::Value) {
+        address.exists = Some(match address.exists {
+            Some(before) => self.ins().band(before, condition),
+            None => condition,
+        });
+    }
+
+    /// The address as a number, null if the place does not exist.
+    pub(super) fn pointer_to(&mut self, address: &Address) -> clif::Value {
+        let ty = self.pointer;
+        let pointer = self
+            .ins()
+            .iadd_imm_s(address.base, i64::from(address.offset));
+        let Some(exists) = address.exists else {
+            return pointer;
+        };
+        let null = self.ins().iconst(ty, 0);
+        self.ins().select(exists, pointer, null)
+    }
+
+    fn load_scalar(&mut self, address: &Address) -> (Type, clif::Value) {
+        let MemType::Scalar(ty) = address.ty else {
+            panic!("only scalars are moved")
+        };
+        let value = self
+            .ins()
+            .load(clif_type(ty), address.flags, address.base, address.offset);
+        (ty, value)
+    }
+
+    pub(super) fn load(&mut self, place: &Place) -> clif::Value {
+        let address = self.address(place);
+        self.load_from(&address)
+    }
+
+    fn load_from(&mut self, address: &Address) -> clif::Value {
+        let (mut ty, mut value) = self.load_scalar(address);
+        if let Some(bit) = address.bit {
+            let count = self.bit_number(bit);
+            let shifted = self.ins().ushr(value, count);
+            value = self.low_bit(shifted, ty);
+            ty = Type::I1;
+        }
+        match address.exists {
+            Some(exists) => {
+                let zero = self.constant(ty, 0);
+                self.ins().select(exists, value, zero)
+            }
+            None => value,
+        }
+    }
+
+    fn low_bit(&mut self, word: clif::Value, ty: Type) -> clif::Value {
+        let low = match clif_type(ty) {
+            types::I8 => word,
+            _ => self.ins().ireduce(types::I8, word),
+        };
+        self.ins().band_imm_u(low, 1)
+    }
+
+    fn bit_number(&mut self, bit: Index) -> clif::Value {
+        match bit {
+            Index::Const(bit) => self.ins().iconst(types::I32, i64::from(bit)),
+            Index::Value(value) => self.value(value),
+        }
+    }
+
+    pub(super) fn store(&mut self, place: &Place, value: Value) {
+        let address = self.address(place);
+        let (constant, value) = (self.func.constant(value), self.value(value));
+        self.if_exists(&address, |this| {
+            let value = match address.bit {
+                Some(bit) => this.with_bit(&address, bit, constant, value),
+                None => value,
+            };
+            this.ins()
+                .store(address.flags, value, address.base, address.offset);
+        });
+    }
+
+    /// Does something only if the place exists, and goes on behind it.
+    fn if_exists(&mut self, address: &Address, then: impl FnOnce(&mut Self)) {
+        let Some(exists) = address.exists else {
+            return then(self);
+        };
+        let (inside, next) = (self.builder.create_block(), self.builder.create_block());
+        self.ins().brif(exists, inside, &[], next, &[]);
+        self.builder.switch_to_block(inside);
+        then(self);
+        self.ins().jump(next, &[]);
+        self.builder.switch_to_block(next);
+    }
+
+    /// The integer at an address with one bit changed.
+    fn with_bit(
+        &mut self,
+        address: &Address,
+        bit: Index,
+        constant: Option<u64>,
+        value: clif::Value,
+    ) -> clif::Value {
+        let (ty, word) = self.load_scalar(address);
+        let count = self.bit_number(bit);
+        let one = self.constant(ty, 1);
+        let mask = self.ins().ishl(one, count);
+        match constant {
+            Some(0) => self.ins().band_not(word, mask),
+            Some(_) => self.ins().bor(word, mask),
+            None => {
+                let cleared = self.ins().band_not(word, mask);
+                let wide = self.extend(value, Type::I1, ty, false);
+                let placed = self.ins().ishl(wide, count);
+                self.ins().bor(cleared, placed)
+            }
+        }
+    }
+
+    pub(super) fn elapsed(&mut self, place: &Place, unit_ns: u64, ty: Type) -> clif::Value {
+        let address = self.address(place);
+        let kept = self.load_from(&address);
+        let now = self.now();
+        self.if_exists(&address, |this| {
+            this.ins()
+                .store(address.flags, now, address.base, address.offset);
+        });
+        self.units_between(kept, now, unit_ns, ty)
+    }
+
+    pub(super) fn step(&mut self, unit_ns: u64, ty: Type) -> clif::Value {
+        let previous = self.context_field(types::I64, ScanContext::PREVIOUS_NS);
+        let now = self.now();
+        self.units_between(previous, now, unit_ns, ty)
+    }
+}
