@@ -1,8 +1,12 @@
-//! What the tests share: where outside data lies, a replayable random source, and mutators that
-//! fuzz targets use as well.
+//! What the tests share: where outside data lies, a replayable random source, mutators that fuzz
+//! targets use as well, file tests in the text form of the IR, and the comparison of engines.
 
 pub mod check;
+pub mod differential;
+pub mod filetest;
+pub mod leaves;
 pub mod mutate;
 pub mod rng;
 pub mod rung_text;
 pub mod shared;
+pub mod stimulus;
