@@ -1,1 +1,3 @@
+//! The program `iecc`.
+
 fn main() {}

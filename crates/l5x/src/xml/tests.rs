@@ -1,3 +1,5 @@
+//! Documents that the parser accepts or refuses, and places in them.
+
 use super::*;
 
 fn parse(text: &str) -> Result<Document<'_>, Box<Diagnostic>> {
