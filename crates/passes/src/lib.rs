@@ -19,6 +19,7 @@ mod functions;
 mod inline;
 mod range;
 mod range_fold;
+mod saturate;
 mod scan_form;
 mod settings;
 mod state;
@@ -73,6 +74,12 @@ pub const PASSES: &[Pass] = &[
         what: "drops state that is constant, unused, or kept twice",
         why_here: "after range_fold and cse, which show what is constant and equal",
         run: state::run,
+    },
+    Pass {
+        name: "saturate",
+        what: "lets counters stop where nobody sees them go on",
+        why_here: "after state, which leaves the comparisons that matter",
+        run: saturate::run,
     },
     Pass {
         name: "early_compare",
