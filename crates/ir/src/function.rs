@@ -174,6 +174,27 @@ impl Function {
         }
     }
 
+    /// Keeps the parameters of a block for whose position `keep` holds, and the arguments for them.
+    /// The others must be unused. `predecessors` are the blocks that jump here.
+    pub fn retain_params(
+        &mut self,
+        block: Block,
+        predecessors: &[Block],
+        keep: impl Fn(usize) -> bool,
+    ) {
+        retain_positions(&mut self.blocks[block].params, &keep);
+        for (position, &param) in self.blocks[block].params.iter().enumerate() {
+            self.values[param].def = ValueDef::Param(block, position as u32);
+        }
+        for &from in predecessors {
+            let terminator = self.blocks[from].terminator.as_mut();
+            let targets = terminator.expect("finished block").targets_mut();
+            for target in targets.into_iter().filter(|target| target.block == block) {
+                retain_positions(&mut target.args, &keep);
+            }
+        }
+    }
+
     /// An instruction.
     pub fn inst(&self, inst: Inst) -> &InstData {
         &self.insts[inst]
@@ -272,4 +293,12 @@ impl Function {
             }
         }
     }
+}
+
+fn retain_positions(values: &mut Vec<Value>, keep: impl Fn(usize) -> bool) {
+    let mut position = 0;
+    values.retain(|_| {
+        position += 1;
+        keep(position - 1)
+    });
 }

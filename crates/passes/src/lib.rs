@@ -15,11 +15,13 @@
 
 mod early_compare;
 mod edit;
+mod fold;
 mod functions;
 mod inline;
 mod range;
 mod range_fold;
 mod saturate;
+mod rewrite;
 mod scan_form;
 mod settings;
 mod state;
@@ -56,6 +58,12 @@ pub const PASSES: &[Pass] = &[
         what: "puts small functions, and those called once, in place of their calls",
         why_here: "first, instead of inline where code size counts",
         run: |module, _| inline::inline_small(module),
+    },
+    Pass {
+        name: "fold",
+        what: "computes constants, simplifies algebra, branches and jumps",
+        why_here: "after every pass that uncovers constants: inlining, promotion, if-conversion",
+        run: |module, _| fold::fold(module),
     },
     Pass {
         name: "step_time",
