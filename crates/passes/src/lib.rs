@@ -13,6 +13,8 @@
     reason = "rewriting picks a few shapes; every other one stays as it is"
 )]
 
+mod cse;
+mod dce;
 mod early_compare;
 mod edit;
 mod fold;
@@ -66,6 +68,18 @@ pub const PASSES: &[Pass] = &[
         run: |module, _| fold::fold(module),
     },
     Pass {
+        name: "cse",
+        what: "computes equal things once, and loads once what is loaded twice",
+        why_here: "after folding, which writes equal things equally",
+        run: |module, _| cse::cse(module),
+    },
+    Pass {
+        name: "dce",
+        what: "drops what nobody can see: instructions, parameters, blocks, functions",
+        why_here: "last, and before passes whose work grows with what is there",
+        run: |module, _| dce::dce(module),
+    },
+    Pass {
         name: "step_time",
         what: "counts the steps of the scan instead of looking at the clock",
         why_here: "before promotion, which then turns its counters into values",
@@ -98,11 +112,11 @@ pub const PASSES: &[Pass] = &[
 ];
 
 /// For engines that run instructions one after the other. Keeps the layout of all regions.
-pub const SOFTWARE: &[&str] = &["inline_small"];
+pub const SOFTWARE: &[&str] = &["inline_small", "fold", "cse", "fold", "dce"];
 
 /// For hardware: ends in a scan of one block without calls, if nothing in the program loops or
 /// faults. The layout of the state may change.
-pub const HARDWARE: &[&str] = &["inline"];
+pub const HARDWARE: &[&str] = &["inline", "fold", "cse", "fold", "dce"];
 
 /// The passes after which the state at the end of a scan is no longer what the program says, in
 /// layout or in value: for targets that publish outputs only. All others keep it bit for bit.

@@ -1,7 +1,19 @@
-//! One check for every pass: text before, text after; both keep the verifier's rules.
+//! One check for every pass: text before, text after; both keep the verifier's rules and do the
+//! same when interpreted.
 
-use iecc_ir::{Module, parse_module, print_module, verify};
+use crate::random::Random;
+use iecc_interp::Interpreter;
+use iecc_ir::{Layout, MemType, Module, Place, Region, Root, Type};
+use iecc_ir::{parse_module, print_module, verify};
 use iecc_passes::{Settings, run};
+use iecc_target::{Engine, region_bytes};
+
+/// Scans that are compared, and fuel for each: a program that loops for ever does so in both.
+const SCANS: usize = 40;
+const FUEL: u64 = 100_000;
+
+/// Passes for hardware that make the state hold something else.
+pub(crate) const RECODE_STATE: [&str; 4] = ["split", "step_time", "state", "early_compare"];
 
 /// Parses and verifies a module.
 pub(crate) fn module(text: &str) -> Module {
@@ -10,24 +22,75 @@ pub(crate) fn module(text: &str) -> Module {
     module
 }
 
-/// Runs passes in order, verifying after each.
+/// Runs passes in order. After each the verifier's rules hold and the module does what the text
+/// says.
 pub(crate) fn optimised(passes: &[&str], text: &str) -> Module {
-    let mut module = module(text);
+    let before = module(text);
+    let mut after = before.clone();
+    let mut same_state = true;
     for pass in passes {
-        run(pass, &mut module, &Settings::default()).unwrap();
-        let text = print_module(&module);
-        assert_eq!(verify(&module).err(), None, "after {pass}:\n{text}");
+        run(pass, &mut after, &Settings::default()).unwrap();
+        same_state &= !RECODE_STATE.contains(pass);
+        same_behaviour(&before, &after, same_state, &format!("after {pass}"));
     }
-    module
+    after
 }
 
 /// The module after the passes must print as `header` and `after`.
 pub(crate) fn check(passes: &[&str], header: &str, before: &str, after: &str) {
     let found = optimised(passes, &format!("{header}{before}"));
     let expected = print_module(&module(&format!("{header}{after}")));
-    pretty_eq(&print_module(&found), &expected);
+    let found = print_module(&found);
+    assert!(found == expected, "found:\n{found}\nexpected:\n{expected}");
 }
 
-fn pretty_eq(found: &str, expected: &str) {
-    assert!(found == expected, "found:\n{found}\nexpected:\n{expected}");
+/// Interprets both with the same inputs and times, many of them at the edges of their types, and
+/// compares faults, outputs, and on demand the state.
+pub(crate) fn same_behaviour(before: &Module, after: &Module, same_state: bool, when: &str) {
+    let text = || {
+        format!(
+            "{when}:\n{}\nbefore:\n{}",
+            print_module(after),
+            print_module(before)
+        )
+    };
+    let verified = verify(after).unwrap_or_else(|errors| panic!("{errors:?}\n{}", text()));
+    let mut old = Interpreter::new(verify(before).expect("verified before")).with_fuel(FUEL);
+    let mut new = Interpreter::new(verified).with_fuel(FUEL);
+    let mut random = Random::new(1);
+    let mut outputs = [Region::Output; 2].map(|region| region_bytes(before, region));
+    let mut now_ns = 0;
+    for scan in 0..SCANS {
+        let inputs = random_inputs(before, &mut random);
+        let results = [
+            old.step(now_ns, &inputs, &mut outputs[0]),
+            new.step(now_ns, &inputs, &mut outputs[1]),
+        ];
+        let codes = results.map(|result| result.map_err(|fault| fault.code));
+        assert_eq!(codes[0], codes[1], "fault of scan {scan} {}", text());
+        assert_eq!(outputs[0], outputs[1], "outputs of scan {scan} {}", text());
+        if same_state {
+            assert_eq!(
+                old.state(),
+                new.state(),
+                "state after scan {scan} {}",
+                text()
+            );
+        }
+        now_ns += random.below(5_000_000);
+    }
+}
+
+fn random_inputs(module: &Module, random: &mut Random) -> Vec<u8> {
+    let layout = Layout::new(&module.types);
+    let mut bytes = region_bytes(module, Region::Input);
+    let start = Place::root(Root::Input);
+    let mut write = |_: &Place, offset: u64, ty: Type| {
+        let value = random.bits(ty).to_le_bytes();
+        let (offset, width) = (offset as usize, ty.bytes() as usize);
+        bytes[offset..offset + width].copy_from_slice(&value[..width]);
+    };
+    let ty = MemType::Struct(module.input);
+    layout.for_each_leaf(&module.types, &start, ty, &mut write);
+    bytes
 }

@@ -1,0 +1,103 @@
+//! Which values are known to lie at which places, inside one block.
+//!
+//! Places that overlap are found without comparing all with all. Static places are kept by their
+//! scalar, with the bits of it that are known; a place with index values may overlap anything, so
+//! storing to one forgets its whole root. References may alias each other and the state.
+
+use iecc_ir::{Index, Place, Projection, Root, Value};
+use std::collections::HashMap;
+
+/// Values at places.
+#[derive(Debug, Default)]
+pub(super) struct Available {
+    roots: HashMap<Root, Known>,
+}
+
+#[derive(Debug, Default)]
+struct Known {
+    scalars: HashMap<Place, Vec<(Option<u32>, Value)>>,
+    dynamic: HashMap<Place, Value>,
+}
+
+impl Available {
+    /// The value at a place, if known.
+    pub(super) fn get(&self, place: &Place) -> Option<Value> {
+        let known = self.roots.get(&place.root)?;
+        if !place.is_static() {
+            return known.dynamic.get(place).copied();
+        }
+        let (scalar, bit) = split_bit(place);
+        let values = known.scalars.get(&scalar)?;
+        let found = values.iter().find(|(known_bit, _)| *known_bit == bit);
+        found.map(|(_, value)| *value)
+    }
+
+    /// A place was found to hold a value.
+    pub(super) fn loaded(&mut self, place: &Place, value: Value) {
+        let known = self.roots.entry(place.root).or_default();
+        if place.is_static() {
+            let (scalar, bit) = split_bit(place);
+            known.scalars.entry(scalar).or_default().push((bit, value));
+        } else {
+            known.dynamic.insert(place.clone(), value);
+        }
+    }
+
+    /// A place was given a value. Where an index is outside, a load gives 0 and not what was
+    /// stored, so places with index values are not remembered.
+    pub(super) fn stored(&mut self, place: &Place, value: Value) {
+        self.changed(place);
+        if place.is_static() {
+            self.loaded(place, value);
+        }
+    }
+
+    /// A place may hold anything now.
+    pub(super) fn changed(&mut self, place: &Place) {
+        self.forget_aliases(place.root);
+        let Some(known) = self.roots.get_mut(&place.root) else {
+            return;
+        };
+        known.dynamic.clear();
+        if !place.is_static() {
+            known.scalars.clear();
+            return;
+        }
+        let (scalar, bit) = split_bit(place);
+        if let Some(values) = known.scalars.get_mut(&scalar) {
+            // Another bit of the word stays; the word itself does not.
+            values.retain(|(other, _)| bit.is_some() && other.is_some() && *other != bit);
+        }
+    }
+
+    /// Anything but the inputs may hold anything now.
+    pub(super) fn called(&mut self) {
+        self.roots.retain(|root, _| *root == Root::Input);
+    }
+
+    fn forget_aliases(&mut self, root: Root) {
+        if may_alias(root) {
+            self.roots
+                .retain(|&other, _| other == root || !may_alias(other));
+        }
+    }
+}
+
+fn may_alias(root: Root) -> bool {
+    match root {
+        Root::State | Root::Ref(_) => true,
+        Root::Input | Root::Output => false,
+    }
+}
+
+/// A static place without its bit, and the bit.
+fn split_bit(place: &Place) -> (Place, Option<u32>) {
+    match place.path.split_last() {
+        Some((Projection::Bit(Index::Const(bit)), rest)) => {
+            let path = rest.to_vec();
+            let root = place.root;
+            (Place { root, path }, Some(*bit))
+        }
+        _ => (place.clone(), None),
+    }
+}
