@@ -13,7 +13,8 @@ const SCANS: usize = 40;
 const FUEL: u64 = 100_000;
 
 /// Passes for hardware that make the state hold something else.
-pub(crate) const RECODE_STATE: [&str; 4] = ["split", "step_time", "state", "early_compare"];
+pub(crate) const RECODE_STATE: [&str; 5] =
+    ["split", "step_time", "state", "saturate", "early_compare"];
 
 /// Parses and verifies a module.
 pub(crate) fn module(text: &str) -> Module {
