@@ -1,25 +1,22 @@
 //! Diagnostics as text for people and as JSON lines for tools.
 
+use crate::excerpt::Excerpt;
 use crate::{Diagnostic, Label, Severity};
 use codespan_reporting::diagnostic as cs;
-use codespan_reporting::files::SimpleFiles;
 use codespan_reporting::term;
 use codespan_reporting::term::termcolor::{Buffer, NoColor};
-use iecc_source::{SourceMap, Span};
+use iecc_source::{FileId, SourceMap, Span};
 use serde_json::{Value, json};
 
 /// Renders one diagnostic with its source lines, as a terminal without colours shows it; with
 /// `colour` the ANSI codes are included.
 pub fn render_text(map: &SourceMap, diagnostic: &Diagnostic, colour: bool) -> String {
-    let mut files = SimpleFiles::new();
-    for id in map.ids() {
-        files.add(map.file(id).name(), map.file(id).text());
-    }
     let config = term::Config {
         tab_width: 4,
         ..term::Config::default()
     };
-    let message = to_codespan(diagnostic);
+    let files = Excerpt::new(map, diagnostic);
+    let message = to_codespan(&files, diagnostic);
     let bytes = if colour {
         let mut buffer = Buffer::ansi();
         term::emit_to_write_style(&mut buffer, &config, &files, &message)
@@ -34,7 +31,7 @@ pub fn render_text(map: &SourceMap, diagnostic: &Diagnostic, colour: bool) -> St
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-fn to_codespan(diagnostic: &Diagnostic) -> cs::Diagnostic<usize> {
+fn to_codespan(files: &Excerpt<'_>, diagnostic: &Diagnostic) -> cs::Diagnostic<FileId> {
     let severity = match diagnostic.severity {
         Severity::Warning => cs::Severity::Warning,
         Severity::Error => cs::Severity::Error,
@@ -42,11 +39,11 @@ fn to_codespan(diagnostic: &Diagnostic) -> cs::Diagnostic<usize> {
     let primary = diagnostic
         .primary
         .iter()
-        .map(|l| label(cs::LabelStyle::Primary, l));
+        .map(|l| label(files, cs::LabelStyle::Primary, l));
     let secondary = diagnostic
         .secondary
         .iter()
-        .map(|l| label(cs::LabelStyle::Secondary, l));
+        .map(|l| label(files, cs::LabelStyle::Secondary, l));
     let fix = diagnostic
         .fix
         .iter()
@@ -58,8 +55,8 @@ fn to_codespan(diagnostic: &Diagnostic) -> cs::Diagnostic<usize> {
         .with_notes(diagnostic.notes.iter().cloned().chain(fix).collect())
 }
 
-fn label(style: cs::LabelStyle, label: &Label) -> cs::Label<usize> {
-    cs::Label::new(style, label.span.file.index(), label.span.range()).with_message(&label.text)
+fn label(files: &Excerpt<'_>, style: cs::LabelStyle, label: &Label) -> cs::Label<FileId> {
+    cs::Label::new(style, label.span.file, files.shown(label.span)).with_message(&label.text)
 }
 
 /// Renders one diagnostic as one line of JSON, without the newline. Keys: `code severity message

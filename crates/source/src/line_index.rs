@@ -34,8 +34,13 @@ impl LineIndex {
         Self { starts }
     }
 
+    /// Where a line (from 0) begins, for all lines that the text has.
+    pub fn start_of(&self, line: usize) -> Option<u32> {
+        self.starts.get(line).copied()
+    }
+
     /// 0-based line that holds the offset; offsets past the end count as the last line.
-    fn line_of(&self, offset: u32) -> usize {
+    pub fn line_of(&self, offset: u32) -> usize {
         self.starts.partition_point(|&start| start <= offset) - 1
     }
 
