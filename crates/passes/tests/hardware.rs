@@ -31,7 +31,7 @@ b0:
   v8: i1 = and v7, v6
   v9: i32 = add v3, v5
   v10: i32 = const 0
-  v11: i1 = slt v9, v10
+  v11: i1 = slt v9, v3
   v12: i32 = const 2147483647
   v13: i32 = select v11, v12, v9
   v14: i32 = select v8, v13, v3

@@ -277,8 +277,7 @@ impl<'a, 'm> Case<'a, 'm> {
                 Some(interval::binary(*op, ty, a, b))
             }
             InstData::Compare { op, args } if func.value_type(args[0]).is_int() => {
-                let (a, b) = (self.range(args[0], depth)?, self.range(args[1], depth)?);
-                Some(interval::compare(*op, a, b))
+                self.compare(*op, *args, depth)
             }
             InstData::Convert { op, arg, .. } if func.value_type(*arg).is_int() => {
                 let from = func.value_type(*arg);
@@ -288,6 +287,38 @@ impl<'a, 'm> Case<'a, 'm> {
             InstData::Load { place } if place.root == Root::State => self.load(value),
             _ => Some(self.analysis.base(value)),
         }
+    }
+
+    fn compare(&mut self, op: CompareOp, [a, b]: [Value; 2], depth: u32) -> Option<Range> {
+        let (ra, rb) = (self.range(a, depth)?, self.range(b, depth)?);
+        let by_range = interval::compare(op, ra, rb);
+        // `x + d < x`, the usual question whether a sum wrapped: not if it cannot and d is not negative.
+        let grown = |case: &mut Self, sum, x| case.is_at_least(sum, x, depth);
+        let below = match op {
+            CompareOp::Slt => grown(self, a, b)?,
+            CompareOp::Sgt => grown(self, b, a)?,
+            _ => false,
+        };
+        Some(if below { Range::constant(0) } else { by_range })
+    }
+
+    /// Whether `sum` is `x + d` without wrapping and d is not negative.
+    fn is_at_least(&mut self, sum: Value, x: Value, depth: u32) -> Option<bool> {
+        let func = self.analysis.func;
+        let Some(InstData::Binary {
+            op: BinaryOp::Add,
+            args,
+        }) = func.def_inst(sum)
+        else {
+            return Some(false);
+        };
+        let added = if args[0] == x { args[1] } else { args[0] };
+        if !args.contains(&x) {
+            return Some(false);
+        }
+        let (x, d) = (self.range(x, depth)?, self.range(added, depth)?);
+        let top = Range::of_type(func.value_type(sum)).hi;
+        Some(d.lo >= 0 && x.hi.checked_add(d.hi).is_some_and(|sum| sum <= top))
     }
 
     fn load(&self, value: Value) -> Option<Range> {
