@@ -6,6 +6,7 @@ pub mod differential;
 pub mod filetest;
 pub mod leaves;
 pub mod mutate;
+pub mod random_ir;
 pub mod rng;
 pub mod rung_text;
 pub mod shared;

@@ -183,6 +183,11 @@ impl FunctionBuilder {
         self.push_one(InstData::Elapsed { place, unit_ns, ty }, ty)
     }
 
+    /// Units since the scan before.
+    pub fn step(&mut self, unit_ns: u64, ty: Type) -> Value {
+        self.push_one(InstData::Step { unit_ns, ty }, ty)
+    }
+
     /// Calls a function with these result types.
     pub fn call(
         &mut self,

@@ -1,0 +1,366 @@
+//! Random function bodies: statements over variables, which the builder turns into SSA.
+
+use super::places::{Route, routes};
+use super::types::value_types;
+use super::values::is_kept;
+use super::{MAX_COST, Options, Signature};
+use crate::rng::Rng;
+use crate::stimulus::random_bits;
+use iecc_ir::{
+    BinaryOp, Block, CompareOp, FaultCode, Function, FunctionBuilder, MemType, Module, Origin,
+    PlaceType, Root, Type, Value, Variable,
+};
+
+/// How deep statements nest.
+const DEPTH: u32 = 4;
+/// Times a loop runs at most.
+const TURNS: u64 = 4;
+
+/// A function being made.
+pub(super) struct Body<'a> {
+    pub(super) module: &'a Module,
+    callees: &'a [Signature],
+    pub(super) options: &'a Options,
+    pub(super) rng: &'a mut Rng,
+    pub(super) builder: FunctionBuilder,
+    pub(super) routes: Vec<Route>,
+    name: String,
+    types: Vec<Type>,
+    variables: Vec<(Variable, Type)>,
+    results: Vec<Type>,
+    statements: usize,
+    /// Instructions executed at most so far, and how often the present statement runs.
+    cost: u64,
+    turns: u64,
+}
+
+impl<'a> Body<'a> {
+    pub(super) fn new(
+        module: &'a Module,
+        callees: &'a [Signature],
+        options: &'a Options,
+        rng: &'a mut Rng,
+        name: &str,
+    ) -> Self {
+        Self {
+            module,
+            callees,
+            options,
+            rng,
+            builder: FunctionBuilder::new(name, &[], &[]),
+            routes: Vec::new(),
+            name: name.to_owned(),
+            types: value_types(options),
+            variables: Vec::new(),
+            results: Vec::new(),
+            statements: 0,
+            cost: 0,
+            turns: 1,
+        }
+    }
+
+    /// Starts the function with these references, parameters and results.
+    pub(super) fn begin(&mut self, refs: &[MemType], params: &[Type], results: &[Type]) {
+        self.builder = FunctionBuilder::new(self.name.as_str(), params, results);
+        for (index, &ty) in refs.iter().enumerate() {
+            self.builder.add_ref(format!("r{index}"), ty);
+        }
+        self.routes = routes(self.module, refs);
+        self.results = results.to_vec();
+        for (index, &ty) in params.iter().enumerate() {
+            let param = self.builder.param(index);
+            self.new_variable(ty, param);
+        }
+        // Two variables of each type: one starts with a constant, one is 0 until assigned.
+        for ty in self.types.clone() {
+            let start = self.constant(ty);
+            self.new_variable(ty, start);
+            let unassigned = self.builder.declare(ty);
+            self.variables.push((unassigned, ty));
+        }
+        self.statements = 1 + self.rng.below(self.options.statements);
+    }
+
+    /// Makes the statements and ends the function; also says what it costs.
+    pub(super) fn finish(mut self) -> (Function, u64) {
+        while self.statements > 0 {
+            self.statement(DEPTH);
+        }
+        self.publish();
+        self.return_now();
+        (self.builder.finish(), self.cost)
+    }
+
+    fn new_variable(&mut self, ty: Type, value: Value) -> Variable {
+        let variable = self.builder.declare(ty);
+        self.builder.assign(variable, value);
+        self.variables.push((variable, ty));
+        variable
+    }
+
+    pub(super) fn variables_of(&self, wanted: Type) -> impl Iterator<Item = Variable> {
+        let variables = self.variables.iter();
+        variables.filter_map(move |&(variable, ty)| (ty == wanted).then_some(variable))
+    }
+
+    pub(super) fn random_type(&mut self) -> Type {
+        self.rng.pick(&self.types)
+    }
+
+    /// Counts instructions of the present statement.
+    pub(super) fn spend(&mut self, instructions: u64) {
+        self.cost += instructions * self.turns;
+    }
+
+    /// Shows some variables to the outside, so that what was computed matters.
+    fn publish(&mut self) {
+        for (variable, ty) in self.variables.clone() {
+            if self.rng.one_in(2) {
+                let value = self.builder.read(variable);
+                self.store_value(ty, value);
+            }
+        }
+    }
+
+    fn block_of(&mut self, depth: u32) {
+        for _ in 0..1 + self.rng.below(3) {
+            self.statement(depth);
+        }
+    }
+
+    fn statement(&mut self, depth: u32) {
+        self.statements = self.statements.saturating_sub(1);
+        self.origin();
+        let nest = depth > 0 && self.statements > 0;
+        let cheap = self.cost < MAX_COST / 4;
+        match self.rng.below(16) {
+            0..=2 => self.assign(),
+            3..=5 => self.store(),
+            6 | 7 => self.call(),
+            8..=10 if nest => self.if_else(depth - 1),
+            11 if nest => self.switch(depth - 1),
+            12 if nest && cheap && self.options.loops => self.counted_loop(depth - 1),
+            13 if nest && cheap && self.options.loops => self.tangle(depth - 1),
+            14 => self.leave_early(),
+            15 if self.options.faults && self.rng.one_in(3) => self.fault(),
+            _ => self.assign(),
+        }
+    }
+
+    fn origin(&mut self) {
+        let origins: Vec<Origin> = self.module.origins.keys().collect();
+        let origin = self.rng.one_in(2).then(|| self.rng.pick(&origins));
+        self.builder.set_origin(origin);
+    }
+
+    fn assign(&mut self) {
+        let (variable, ty) = self.rng.pick(&self.variables);
+        let value = self.value(ty);
+        self.builder.assign(variable, value);
+    }
+
+    fn store(&mut self) {
+        let ty = self.random_type();
+        let value = self.value(ty);
+        self.store_value(ty, value);
+    }
+
+    fn store_value(&mut self, ty: Type, value: Value) {
+        self.spend(1);
+        let place = self.place(|route| route.is_value(ty) && route.root != Root::Input);
+        if let Some(place) = place {
+            self.builder.store(place, value);
+        }
+    }
+
+    /// A call that keeps the cost of this function within the limit.
+    fn call(&mut self) {
+        let left = MAX_COST.saturating_sub(self.cost) / self.turns;
+        let callees = self.callees.iter().filter(|callee| callee.cost < left);
+        let callees: Vec<&Signature> = callees.collect();
+        if callees.is_empty() {
+            return self.store();
+        }
+        let callee = self.rng.pick(&callees);
+        let mut refs = Vec::new();
+        for &ty in &callee.refs {
+            let fits = |route: &Route| route.end == PlaceType::Mem(ty) && is_kept(route);
+            refs.push(self.place(fits).expect("the state holds every type"));
+        }
+        let args = callee.params.iter().map(|&ty| self.value(ty)).collect();
+        self.spend(callee.cost);
+        let results = self.builder.call(callee.id, refs, args, &callee.results);
+        for (&value, &ty) in results.iter().zip(&callee.results) {
+            let variables: Vec<_> = self.variables_of(ty).collect();
+            let variable = self.rng.pick(&variables);
+            self.builder.assign(variable, value);
+        }
+    }
+
+    fn if_else(&mut self, depth: u32) {
+        let cond = self.value(Type::I1);
+        let [then, join] = self.blocks();
+        if self.rng.one_in(2) {
+            let [otherwise] = self.blocks();
+            self.builder.brif(cond, then, otherwise);
+            self.arm(otherwise, join, depth);
+        } else {
+            self.builder.brif(cond, then, join);
+        }
+        self.arm(then, join, depth);
+        self.continue_in(join);
+    }
+
+    fn switch(&mut self, depth: u32) {
+        let integers: Vec<Type> = self
+            .types
+            .iter()
+            .copied()
+            .filter(|ty| ty.is_int())
+            .collect();
+        let ty = self.rng.pick(&integers);
+        let value = self.value(ty);
+        let join = self.builder.create_block();
+        let mut cases: Vec<(u64, Block)> = Vec::new();
+        for _ in 0..self.rng.below(4) {
+            let bits = random_bits(ty, self.rng);
+            if cases.iter().all(|(case, _)| *case != bits) {
+                // Two cases may share a block.
+                let shared = cases
+                    .last()
+                    .filter(|_| self.rng.one_in(3))
+                    .map(|(_, block)| *block);
+                let block = shared.unwrap_or_else(|| self.builder.create_block());
+                cases.push((bits, block));
+            }
+        }
+        let default = self.builder.create_block();
+        self.builder.switch(value, cases.clone(), default);
+        let mut arms: Vec<Block> = cases.into_iter().map(|(_, block)| block).collect();
+        arms.dedup();
+        for block in arms.into_iter().chain([default]) {
+            self.arm(block, join, depth);
+        }
+        self.continue_in(join);
+    }
+
+    fn blocks<const N: usize>(&mut self) -> [Block; N] {
+        [(); N].map(|()| self.builder.create_block())
+    }
+
+    /// Fills a block that has all its predecessors and goes on in `join`.
+    fn arm(&mut self, block: Block, join: Block, depth: u32) {
+        self.builder.seal(block);
+        self.builder.switch_to(block);
+        self.block_of(depth);
+        self.builder.jump(join);
+    }
+
+    fn continue_in(&mut self, block: Block) {
+        self.builder.seal(block);
+        self.builder.switch_to(block);
+    }
+
+    /// `n := few; while n > 0 { n := n - 1; …; if c { break } }`, the counter out of reach.
+    fn counted_loop(&mut self, depth: u32) {
+        let counter = self.counter();
+        let [head, body, latch, exit] = self.blocks();
+        self.builder.jump(head);
+        self.builder.switch_to(head);
+        let more = self.count_down(counter);
+        self.builder.brif(more, body, exit);
+        self.continue_in(body);
+        let turns = self.turns;
+        self.turns *= TURNS + 1;
+        self.spend(8);
+        self.block_of(depth);
+        if self.rng.one_in(3) {
+            let cond = self.value(Type::I1);
+            self.builder.brif(cond, exit, latch);
+        } else {
+            self.builder.jump(latch);
+        }
+        self.turns = turns;
+        self.continue_in(latch);
+        self.builder.jump(head);
+        self.builder.seal(head);
+        self.continue_in(exit);
+    }
+
+    /// Two blocks that go on in each other and are both entered from outside.
+    fn tangle(&mut self, depth: u32) {
+        let counter = self.counter();
+        let cond = self.value(Type::I1);
+        let [left, right, exit] = self.blocks();
+        self.builder.brif(cond, left, right);
+        let turns = self.turns;
+        self.turns *= TURNS + 1;
+        self.spend(8);
+        for (block, other) in [(left, right), (right, left)] {
+            self.builder.switch_to(block);
+            self.block_of(depth.min(1));
+            let more = self.count_down(counter);
+            self.builder.brif(more, other, exit);
+        }
+        self.turns = turns;
+        self.builder.seal(left);
+        self.builder.seal(right);
+        self.continue_in(exit);
+    }
+
+    /// A variable for counting, which no other statement sees.
+    fn counter(&mut self) -> Variable {
+        let turns = self.rng.next_u64() % (TURNS + 1);
+        let start = self.builder.constant(Type::I32, turns);
+        let counter = self.builder.declare(Type::I32);
+        self.builder.assign(counter, start);
+        counter
+    }
+
+    /// Counts down; whether it was above 0.
+    fn count_down(&mut self, counter: Variable) -> Value {
+        let before = self.builder.read(counter);
+        let zero = self.builder.constant(Type::I32, 0);
+        let one = self.builder.constant(Type::I32, 1);
+        let more = self.builder.compare(CompareOp::Sgt, before, zero);
+        let after = self.builder.binary(BinaryOp::Sub, before, one);
+        self.builder.assign(counter, after);
+        more
+    }
+
+    /// Returns under a condition; rarely always, with blocks behind that nothing reaches.
+    fn leave_early(&mut self) {
+        let [leave, stay] = self.blocks();
+        if self.rng.one_in(6) {
+            self.builder.jump(leave);
+        } else {
+            let cond = self.rare();
+            self.builder.brif(cond, leave, stay);
+        }
+        self.continue_in(leave);
+        self.return_now();
+        self.continue_in(stay);
+    }
+
+    fn fault(&mut self) {
+        let [fail, stay] = self.blocks();
+        let cond = self.rare();
+        self.builder.brif(cond, fail, stay);
+        self.continue_in(fail);
+        let code = self.rng.pick(FaultCode::ALL);
+        self.builder.fault(code);
+        self.continue_in(stay);
+    }
+
+    /// A condition that seldom holds.
+    fn rare(&mut self) -> Value {
+        let (value, small) = (self.value(Type::I8), self.constant(Type::I8));
+        self.builder.compare(CompareOp::Eq, value, small)
+    }
+
+    fn return_now(&mut self) {
+        let results = self.results.clone();
+        let values = results.into_iter().map(|ty| self.value(ty)).collect();
+        self.builder.ret(values);
+    }
+}

@@ -1,0 +1,83 @@
+//! Random structs and arrays, and the regions made of them.
+
+use super::Options;
+use crate::rng::Rng;
+use iecc_ir::{FieldDef, MemType, StructId, Type, TypeTable};
+
+/// The types of a module.
+pub(super) struct RandomTypes {
+    pub(super) table: TypeTable,
+    pub(super) state: StructId,
+    pub(super) input: StructId,
+    pub(super) output: StructId,
+    values: Vec<Type>,
+    /// What references may refer to.
+    memory: Vec<MemType>,
+}
+
+/// The value types a module with these options may use.
+pub(super) fn value_types(options: &Options) -> Vec<Type> {
+    let all = Type::ALL.into_iter();
+    all.filter(|ty| options.floats || ty.is_int()).collect()
+}
+
+impl RandomTypes {
+    pub(super) fn new(rng: &mut Rng, options: &Options) -> Self {
+        let values = value_types(options);
+        let mut table = TypeTable::default();
+        let mut memory: Vec<MemType> = values.iter().copied().map(MemType::Scalar).collect();
+        for index in 0..2 + rng.below(3) {
+            let fields = fields(rng, &memory, &mut table, 1);
+            let id = table.add_struct(format!("S{index}"), fields);
+            memory.push(MemType::Struct(id));
+        }
+        // A state that holds each type once makes every reference type callable.
+        let mut state = fields(rng, &memory, &mut table, 4);
+        for (index, &ty) in memory.iter().enumerate() {
+            let name = format!("each{index}");
+            state.push(FieldDef { name, ty });
+        }
+        let (inputs, outputs) = (
+            fields(rng, &memory[..values.len()], &mut table, 4),
+            fields(rng, &memory[..values.len()], &mut table, 4),
+        );
+        memory.extend(state.iter().map(|field| field.ty));
+        Self {
+            state: table.add_struct("state", state),
+            input: table.add_struct("input", inputs),
+            output: table.add_struct("output", outputs),
+            table,
+            values,
+            memory,
+        }
+    }
+
+    pub(super) fn random_values(&self, rng: &mut Rng, most: usize) -> Vec<Type> {
+        (0..rng.below(most + 1))
+            .map(|_| rng.pick(&self.values))
+            .collect()
+    }
+
+    pub(super) fn random_refs(&self, rng: &mut Rng) -> Vec<MemType> {
+        (0..rng.below(3)).map(|_| rng.pick(&self.memory)).collect()
+    }
+}
+
+/// At least `least` fields of the types, some in arrays; one name needs quotes.
+fn fields(rng: &mut Rng, memory: &[MemType], table: &mut TypeTable, least: usize) -> Vec<FieldDef> {
+    let count = least + rng.below(4);
+    let mut fields = Vec::with_capacity(count);
+    for index in 0..count {
+        let mut ty = rng.pick(memory);
+        while rng.one_in(4) {
+            ty = MemType::Array(table.array(ty, 1 + rng.below(4) as u32));
+        }
+        let name = if index == 1 {
+            "Local:1:I.\"x\"".to_owned()
+        } else {
+            format!("x{index}")
+        };
+        fields.push(FieldDef { name, ty });
+    }
+    fields
+}
