@@ -1,14 +1,13 @@
 //! Random function bodies: statements over variables, which the builder turns into SSA.
 
 use super::places::{Route, routes};
-use super::types::value_types;
-use super::values::is_kept;
+use super::types::{ACC, DONE, LAST, TIMERS, timer_field, value_types};
 use super::{MAX_COST, Options, Signature};
 use crate::rng::Rng;
 use crate::stimulus::random_bits;
 use iecc_ir::{
     BinaryOp, Block, CompareOp, FaultCode, Function, FunctionBuilder, MemType, Module, Origin,
-    PlaceType, Root, Type, Value, Variable,
+    Place, PlaceType, Root, Type, Value, Variable,
 };
 
 /// How deep statements nest.
@@ -107,6 +106,11 @@ impl<'a> Body<'a> {
         self.rng.pick(&self.types)
     }
 
+    fn integer_types(&self) -> Vec<Type> {
+        let types = self.types.iter().copied();
+        types.filter(|ty| ty.is_int()).collect()
+    }
+
     /// Counts instructions of the present statement.
     pub(super) fn spend(&mut self, instructions: u64) {
         self.cost += instructions * self.turns;
@@ -133,7 +137,7 @@ impl<'a> Body<'a> {
         self.origin();
         let nest = depth > 0 && self.statements > 0;
         let cheap = self.cost < MAX_COST / 4;
-        match self.rng.below(16) {
+        match self.rng.below(20) {
             0..=2 => self.assign(),
             3..=5 => self.store(),
             6 | 7 => self.call(),
@@ -143,6 +147,8 @@ impl<'a> Body<'a> {
             13 if nest && cheap && self.options.loops => self.tangle(depth - 1),
             14 => self.leave_early(),
             15 if self.options.faults && self.rng.one_in(3) => self.fault(),
+            16 | 17 if self.options.timers => self.timer(),
+            18 | 19 => self.accumulate(),
             _ => self.assign(),
         }
     }
@@ -167,10 +173,62 @@ impl<'a> Body<'a> {
 
     fn store_value(&mut self, ty: Type, value: Value) {
         self.spend(1);
-        let place = self.place(|route| route.is_value(ty) && route.root != Root::Input);
+        let place = self.place(|route| route.is_value(ty) && !route.is_constant);
         if let Some(place) = place {
             self.builder.store(place, value);
         }
+    }
+
+    /// Changes what is kept by what it was.
+    fn accumulate(&mut self) {
+        let integers = self.integer_types();
+        let ty = self.rng.pick(&integers);
+        let Some(place) = self.place(|route| route.is_value(ty) && route.is_kept()) else {
+            return;
+        };
+        let (before, change) = (self.builder.load(place.clone(), ty), self.value(ty));
+        let op = if ty == Type::I1 {
+            BinaryOp::Xor
+        } else {
+            BinaryOp::Add
+        };
+        let after = self.builder.binary(op, before, change);
+        self.builder.store(place, after);
+        self.spend(3);
+    }
+
+    /// An on-delay timer: counts to a constant while a condition holds. Its time runs in every
+    /// scan, or only while it counts.
+    fn timer(&mut self) {
+        let timer = self.rng.below(TIMERS as usize) as u32;
+        let at = timer_field(&self.module.types, self.module.state, timer);
+        let place = |field| Place::root(Root::State).field(at).field(field);
+        let unit_ns = [1_000_000, 1, 10_000_000][timer as usize];
+        let always = self.rng.one_in(2);
+        let cond = self.value(Type::I1);
+        let delta = always.then(|| self.builder.elapsed(place(LAST), unit_ns, Type::I32));
+        let [on, off, join] = self.blocks();
+        self.builder.brif(cond, on, off);
+        self.continue_in(on);
+        let delta = delta.unwrap_or_else(|| self.builder.elapsed(place(LAST), unit_ns, Type::I32));
+        let acc = self.builder.load(place(ACC), Type::I32);
+        let preset = self.rng.pick(&[0, 1, 90, 2_000, 0x7fff_ffff]);
+        let preset = self.builder.constant(Type::I32, preset);
+        let room = self.builder.binary(BinaryOp::Sub, preset, acc);
+        let done = self.builder.compare(CompareOp::Sge, delta, room);
+        let sum = self.builder.binary(BinaryOp::Add, acc, delta);
+        let acc = self.builder.select(done, preset, sum);
+        self.builder.store(place(ACC), acc);
+        self.builder.store(place(DONE), done);
+        self.builder.jump(join);
+        self.continue_in(off);
+        let zero = self.builder.constant(Type::I32, 0);
+        let no = self.builder.constant(Type::I1, 0);
+        self.builder.store(place(ACC), zero);
+        self.builder.store(place(DONE), no);
+        self.builder.jump(join);
+        self.continue_in(join);
+        self.spend(16);
     }
 
     /// A call that keeps the cost of this function within the limit.
@@ -184,7 +242,7 @@ impl<'a> Body<'a> {
         let callee = self.rng.pick(&callees);
         let mut refs = Vec::new();
         for &ty in &callee.refs {
-            let fits = |route: &Route| route.end == PlaceType::Mem(ty) && is_kept(route);
+            let fits = |route: &Route| route.end == PlaceType::Mem(ty) && route.is_kept();
             refs.push(self.place(fits).expect("the state holds every type"));
         }
         let args = callee.params.iter().map(|&ty| self.value(ty)).collect();
@@ -212,12 +270,7 @@ impl<'a> Body<'a> {
     }
 
     fn switch(&mut self, depth: u32) {
-        let integers: Vec<Type> = self
-            .types
-            .iter()
-            .copied()
-            .filter(|ty| ty.is_int())
-            .collect();
+        let integers = self.integer_types();
         let ty = self.rng.pick(&integers);
         let value = self.value(ty);
         let join = self.builder.create_block();

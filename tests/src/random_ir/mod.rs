@@ -1,6 +1,6 @@
 //! Random modules that keep the verifier's rules: nested branches, switches, loops that end,
 //! graphs that no structured program has, calls with references that alias, every value operation,
-//! words and their bits, indices in and out of bounds, time, and now and then a fault.
+//! words and their bits, indices in and out of bounds, timers, and now and then a fault.
 //!
 //! A seed and options always give the same module. A scan of one takes at most some
 //! [`MAX_COST`] instructions, so fuel plays no part.
@@ -39,8 +39,10 @@ pub struct Options {
     pub now: bool,
     /// The time since the scan before.
     pub step: bool,
-    /// The time since the same code ran.
+    /// The time since the same code ran, kept in any place, however else that is used.
     pub elapsed: bool,
+    /// Timers as front ends make them, with a place for the time that nothing else uses.
+    pub timers: bool,
 }
 
 impl Options {
@@ -57,11 +59,12 @@ impl Options {
             now: true,
             step: true,
             elapsed: true,
+            timers: true,
         }
     }
 
-    /// What becomes a scan of one block without anything hardware has to refuse. Time is `step`:
-    /// `elapsed` on a place that is also used otherwise would stay.
+    /// What becomes a scan of one block without anything hardware has to refuse. Its time is that of
+    /// timers, and `step`.
     pub fn hardware() -> Self {
         Self {
             loops: false,
@@ -134,7 +137,8 @@ fn empty_module(types: &RandomTypes, rng: &mut Rng) -> Module {
         &Place::root(Root::State),
         state,
         &mut |place, offset, ty| {
-            if rng.one_in(2) {
+            // The time a timer keeps starts at 0, as front ends have it.
+            if !types.is_timer(place) && rng.one_in(2) {
                 image.set(offset, Scalar::new(ty, random_bits(ty, rng)));
             }
             if rng.one_in(8) {

@@ -2,7 +2,15 @@
 
 use super::Options;
 use crate::rng::Rng;
-use iecc_ir::{FieldDef, MemType, StructId, Type, TypeTable};
+use iecc_ir::{FieldDef, MemType, Place, Projection, StructId, Type, TypeTable};
+
+/// Timers of a module.
+pub(super) const TIMERS: u32 = 3;
+/// Fields of a timer: what it has counted, whether that is enough, and the time it last ran, which
+/// only `elapsed` uses.
+pub(super) const ACC: u32 = 0;
+pub(super) const DONE: u32 = 1;
+pub(super) const LAST: u32 = 2;
 
 /// The types of a module.
 pub(super) struct RandomTypes {
@@ -37,11 +45,12 @@ impl RandomTypes {
             let name = format!("each{index}");
             state.push(FieldDef { name, ty });
         }
+        memory.extend(state.iter().map(|field| field.ty));
+        state.extend(timers(&mut table));
         let (inputs, outputs) = (
             fields(rng, &memory[..values.len()], &mut table, 4),
             fields(rng, &memory[..values.len()], &mut table, 4),
         );
-        memory.extend(state.iter().map(|field| field.ty));
         Self {
             state: table.add_struct("state", state),
             input: table.add_struct("input", inputs),
@@ -50,6 +59,12 @@ impl RandomTypes {
             values,
             memory,
         }
+    }
+
+    /// Whether a place of the state lies in a timer.
+    pub(super) fn is_timer(&self, place: &Place) -> bool {
+        let first = timer_field(&self.table, self.state, 0);
+        matches!(place.path.first(), Some(Projection::Field(field)) if *field >= first)
     }
 
     pub(super) fn random_values(&self, rng: &mut Rng, most: usize) -> Vec<Type> {
@@ -61,6 +76,28 @@ impl RandomTypes {
     pub(super) fn random_refs(&self, rng: &mut Rng) -> Vec<MemType> {
         (0..rng.below(3)).map(|_| rng.pick(&self.memory)).collect()
     }
+}
+
+fn timers(table: &mut TypeTable) -> impl Iterator<Item = FieldDef> + use<> {
+    let field = |name: &str, ty| FieldDef {
+        name: name.to_owned(),
+        ty: MemType::Scalar(ty),
+    };
+    let fields = vec![
+        field("acc", Type::I32),
+        field("done", Type::I1),
+        field("last", Type::I64),
+    ];
+    let ty = MemType::Struct(table.add_struct("TIMER", fields));
+    (0..TIMERS).map(move |index| FieldDef {
+        name: format!("timer{index}"),
+        ty,
+    })
+}
+
+/// The field of the state that holds a timer: they are its last.
+pub(super) fn timer_field(table: &TypeTable, state: StructId, timer: u32) -> u32 {
+    table.structs[state].fields.len() as u32 - TIMERS + timer
 }
 
 /// At least `least` fields of the types, some in arrays; one name needs quotes.

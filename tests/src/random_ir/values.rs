@@ -103,7 +103,7 @@ impl Body<'_> {
             (true, true, _) | (false, true, false) => {
                 let place = self.place(|route| {
                     let whole = !matches!(route.steps.last(), Some(Step::Bit(_)));
-                    whole && route.is_value(Type::I64) && is_kept(route)
+                    whole && route.is_value(Type::I64) && route.is_kept()
                 });
                 match place {
                     Some(place) => self.builder.elapsed(place, unit_ns, ty),
@@ -117,7 +117,12 @@ impl Body<'_> {
 
     fn load(&mut self, ty: Type) -> Value {
         self.spend(1);
-        match self.place(|route| route.is_value(ty) && route.root != Root::Output) {
+        // Inputs are few but are what makes a module lively.
+        let inputs = self.rng.one_in(3);
+        let place = self
+            .place(|route| inputs && route.root == Root::Input && route.is_value(ty))
+            .or_else(|| self.place(|route| route.is_value(ty) && route.root != Root::Output));
+        match place {
             Some(place) => self.builder.load(place, ty),
             None => self.constant(ty),
         }
@@ -156,14 +161,6 @@ impl Body<'_> {
         let mask = self.builder.constant(Type::I32, mask);
         self.spend(2);
         Index::Value(self.builder.binary(BinaryOp::And, value, mask))
-    }
-}
-
-/// Whether it leads into memory that is kept from scan to scan.
-pub(super) fn is_kept(route: &Route) -> bool {
-    match route.root {
-        Root::State | Root::Ref(_) => true,
-        Root::Input | Root::Output => false,
     }
 }
 
