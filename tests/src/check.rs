@@ -1,9 +1,61 @@
 //! What must hold for any input at all. Normal tests call these with fixed seeds, fuzz targets
 //! with whatever they find.
 
+use crate::differential::interpreter;
+use crate::rng::Rng;
+use crate::stimulus::random_stimulus;
 use iecc_ast::rung::Rung;
 use iecc_diag::{Code, Diagnostics};
+use iecc_ir::{Layout, MemType, Module, Region};
+use iecc_passes::{HARDWARE, SOFTWARE, Settings, run_pipeline};
 use iecc_source::{FileId, MappedText};
+use iecc_target::{Engine, region_bytes};
+
+/// Regions larger than this are parsed but not run: bytes.
+const MAX_REGION: usize = 1 << 16;
+
+/// Parsing the text form gives a module or a message. What was parsed prints to text that parses to
+/// the same; what also keeps the verifier's rules runs, passes or not, and ends. Says whether it
+/// ran.
+pub fn ir(text: &str) -> bool {
+    let Ok(module) = iecc_ir::parse_module(text) else {
+        return false;
+    };
+    let regions = [Region::State, Region::Input, Region::Output];
+    let sizes = regions.map(|region| region_size(&module, region));
+    if sizes.into_iter().any(|size| size > MAX_REGION as u64) {
+        return false;
+    }
+    let printed = iecc_ir::print_module(&module);
+    let again = iecc_ir::parse_module(&printed).unwrap_or_else(|e| panic!("{e}\n{printed}"));
+    assert_eq!(iecc_ir::print_module(&again), printed);
+    if iecc_ir::verify(&module).is_err() {
+        return false;
+    }
+    scans(&module);
+    for pipeline in [SOFTWARE, HARDWARE] {
+        let mut after = module.clone();
+        let settings = Settings::default();
+        run_pipeline(&mut after, pipeline, &settings, &mut |_, _| {}).expect("passes exist");
+        scans(&after);
+    }
+    true
+}
+
+fn region_size(module: &Module, region: Region) -> u64 {
+    let layout = Layout::new(&module.types);
+    layout.size(&module.types, MemType::Struct(module.region(region)))
+}
+
+/// A few scans, none longer than some thousand instructions.
+fn scans(module: &Module) {
+    let mut engine = interpreter(module).with_fuel(10_000);
+    let mut outputs = region_bytes(module, Region::Output);
+    for scan in random_stimulus(module, &mut Rng::new(0), 4) {
+        // A fault is an answer like any other here.
+        let _ = engine.step(scan.now_ns, &scan.inputs, &mut outputs);
+    }
+}
 
 /// Reading an export gives a project or a message, and every place lies in the text.
 pub fn l5x(text: &str) {

@@ -4,6 +4,7 @@ use crate::leaves::{leaves, value_text};
 use crate::stimulus::ScanInput;
 use iecc_interp::Interpreter;
 use iecc_ir::{Module, Region, print_module};
+use iecc_jit::Jit;
 use iecc_passes::CHANGE_STATE;
 use iecc_target::{Engine, Fault, region_bytes};
 use std::fmt;
@@ -15,6 +16,12 @@ pub trait Subject: Engine {
 }
 
 impl Subject for Interpreter {
+    fn state_bytes(&self) -> &[u8] {
+        self.state()
+    }
+}
+
+impl Subject for Jit {
     fn state_bytes(&self) -> &[u8] {
         self.state()
     }

@@ -120,7 +120,7 @@ pub const HARDWARE: &[&str] = &["inline", "fold", "cse", "fold", "dce"];
 
 /// The passes after which the state at the end of a scan is no longer what the program says, in
 /// layout or in value: for targets that publish outputs only. All others keep it bit for bit.
-pub const CHANGE_STATE: &[&str] = &["step_time", "state", "early_compare"];
+pub const CHANGE_STATE: &[&str] = &["step_time", "state", "saturate", "early_compare"];
 
 /// There is no pass of this name.
 #[derive(Debug, Clone, PartialEq, Eq)]

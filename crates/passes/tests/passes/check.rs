@@ -5,16 +5,12 @@ use crate::random::Random;
 use iecc_interp::Interpreter;
 use iecc_ir::{Layout, MemType, Module, Place, Region, Root, Type};
 use iecc_ir::{parse_module, print_module, verify};
-use iecc_passes::{Settings, run};
+use iecc_passes::{CHANGE_STATE, Settings, run};
 use iecc_target::{Engine, region_bytes};
 
 /// Scans that are compared, and fuel for each: a program that loops for ever does so in both.
 const SCANS: usize = 40;
 const FUEL: u64 = 100_000;
-
-/// Passes for hardware that make the state hold something else.
-pub(crate) const RECODE_STATE: [&str; 5] =
-    ["split", "step_time", "state", "saturate", "early_compare"];
 
 /// Parses and verifies a module.
 pub(crate) fn module(text: &str) -> Module {
@@ -31,7 +27,7 @@ pub(crate) fn optimised(passes: &[&str], text: &str) -> Module {
     let mut same_state = true;
     for pass in passes {
         run(pass, &mut after, &Settings::default()).unwrap();
-        same_state &= !RECODE_STATE.contains(pass);
+        same_state &= !CHANGE_STATE.contains(pass);
         same_behaviour(&before, &after, same_state, &format!("after {pass}"));
     }
     after

@@ -1,0 +1,34 @@
+//! Damaged modules in the text form: messages, never a panic. The check is that of the fuzz target.
+
+use iecc_ir::print_module;
+use iecc_tests::check;
+use iecc_tests::mutate::mutate;
+use iecc_tests::random_ir::{Options, random_module};
+use iecc_tests::rng::Rng;
+
+const SEEDS: u64 = 1000;
+
+/// Small, so that damage hits something else each time.
+const SMALL: Options = Options {
+    statements: 4,
+    functions: 1,
+    loops: true,
+    faults: true,
+    floats: true,
+    division: true,
+    dynamic_places: true,
+    now: true,
+    step: true,
+    elapsed: true,
+    timers: true,
+};
+
+#[test]
+fn damaged_modules_are_refused_or_run() {
+    let mut ran = 0;
+    for seed in 0..SEEDS {
+        let text = print_module(&random_module(seed, &SMALL));
+        ran += u64::from(check::ir(&mutate(&text, &mut Rng::new(seed))));
+    }
+    assert!((1..SEEDS).contains(&ran), "both outcomes occur: {ran}");
+}
