@@ -76,6 +76,22 @@ codes! {
     E5005 Error "number does not fit 64 bits";
     E5006 Error "attribute or element is missing or malformed";
     E5007 Error "tag data is malformed";
+    // 6 configuration, tasks and addresses
+    E6001 Error "duration is malformed";
+    E6002 Error "period or length of the run is out of range";
+    E6003 Error "stimulus has no header with a time column";
+    E6004 Error "stimulus row has the wrong number of cells";
+    E6005 Error "stimulus time is malformed";
+    E6006 Error "stimulus times do not ascend";
+    E6007 Error "value is malformed";
+    E6008 Error "value does not fit the type";
+    E6009 Error "no tag or point has this name";
+    E6010 Error "path does not fit the type of the tag";
+    E6011 Error "stimulus column is given twice";
+    E6012 Error "stimulus cannot set this";
+    E6013 Error "file cannot be written";
+    E6014 Error "scan was abandoned by a fault";
+    E6015 Error "format of the trace is unknown";
 }
 
 impl Code {

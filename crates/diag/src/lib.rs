@@ -9,7 +9,9 @@ mod codes;
 mod diagnostic;
 mod excerpt;
 mod render;
+mod suggest;
 
 pub use codes::{Code, Severity};
 pub use diagnostic::{Diagnostic, Diagnostics, Fix, Label};
 pub use render::{render_json, render_text};
+pub use suggest::closest;

@@ -1,1 +1,3 @@
-//! placeholder
+//! Wires the pipeline.
+
+pub mod run;

@@ -1,0 +1,256 @@
+//! Whole runs of small programs, with traces worked out by hand.
+
+use super::{
+    CsvTrace, NoTrace, Request, RunError, Schedule, Session, Stimulus, Trace, TraceFile, VcdTrace,
+};
+use iecc_diag::{Code, Diagnostics};
+use iecc_interp::Interpreter;
+use iecc_ir::{Module, parse_module, verify};
+use iecc_jit::Jit;
+use iecc_source::FileId;
+use iecc_target::Engine;
+
+/// A latch, a timer of 20 ms, and a counter of scans in which the lamp is on.
+const LATCH: &str = "module latch
+struct TIMER { DN: i1, PRE: i32, ACC: i32, last: i64 }
+state { Start: i1, t: TIMER, lamps: i16, r: f32 }
+input { Start: i1, Stop: i1 }
+output { Lamp: i1 }
+init t.PRE = 20
+init r = 0.5
+origin @0 = \"Main rung 2\"
+scan @s
+fn @s[]() -> () {
+b0:
+  v0: i1 = load input.Start
+  store state.Start, v0
+  v1: i32 = elapsed state.t.last, 1ms
+  v2: i32 = load state.t.ACC
+  v3: i32 = add v2, v1
+  v4: i32 = const 0
+  v5: i32 = select v0, v3, v4
+  store state.t.ACC, v5
+  v6: i32 = load state.t.PRE
+  v7: i1 = sge v5, v6
+  store state.t.DN, v7
+  store output.Lamp, v7
+  v8: i16 = zext v7
+  v9: i16 = load state.lamps
+  v10: i16 = add v9, v8
+  store state.lamps, v10
+  v11: i1 = load input.Stop
+  brif v11, b1, b2
+b1:
+  fault index @0
+b2:
+  return
+}
+";
+
+struct Prepared {
+    module: Module,
+    session: Session,
+}
+
+fn prepare(watches: &[&str], stimulus: &str) -> Prepared {
+    let mut module = parse_module(LATCH).unwrap();
+    let mut diagnostics = Diagnostics::new();
+    let stimulus = Stimulus::parse(FileId::from_index(0), stimulus, &mut diagnostics);
+    let watches: Vec<String> = watches.iter().map(|&w| w.to_owned()).collect();
+    let request = Request {
+        watches: &watches,
+        stimulus: stimulus.as_ref(),
+    };
+    let session = Session::prepare(&mut module, &request, &mut diagnostics);
+    let session = session.unwrap_or_else(|| panic!("{diagnostics:?}"));
+    Prepared { module, session }
+}
+
+fn engines(module: &Module) -> [Box<dyn Engine>; 2] {
+    let verified = verify(module).unwrap();
+    [
+        Box::new(Interpreter::new(verified)),
+        Box::new(Jit::new(verified).unwrap()),
+    ]
+}
+
+fn csv(
+    prepared: &Prepared,
+    engine: &mut dyn Engine,
+    schedule: Schedule,
+    changes_only: bool,
+) -> String {
+    let mut text = Vec::new();
+    let columns = prepared.session.columns();
+    let mut trace = CsvTrace::new(&mut text, columns, schedule.unit(), changes_only).unwrap();
+    prepared
+        .session
+        .run(engine, schedule, &mut trace, &mut |_| {})
+        .unwrap();
+    trace.finish().unwrap();
+    String::from_utf8(text).unwrap()
+}
+
+fn ms(period_ms: u64, scans: u64) -> Schedule {
+    Schedule::for_scans(period_ms * 1_000_000, scans).unwrap()
+}
+
+const STIMULUS: &str = "t_ms,Start,lamps\n0,1,\n25,,100\n31,0,\n";
+
+#[test]
+fn a_trace_holds_inputs_outputs_and_watches_after_each_scan() {
+    let prepared = prepare(&["t", "lamps.0", "LAMPS", "r", "lamp", "t.acc"], STIMULUS);
+    let expected = "\
+t_ms,Start,Stop,Lamp,t.DN,t.PRE,t.ACC,lamps.0,LAMPS,r
+0,1,0,0,0,20,0,0,0,0.5
+10,1,0,0,0,20,10,0,0,0.5
+20,1,0,1,1,20,20,1,1,0.5
+30,1,0,1,1,20,30,1,101,0.5
+40,0,0,0,0,20,0,1,101,0.5
+50,0,0,0,0,20,0,1,101,0.5
+";
+    for mut engine in engines(&prepared.module) {
+        assert_eq!(csv(&prepared, &mut *engine, ms(10, 6), false), expected);
+    }
+    let changes = expected.replace("50,0,0,0,0,20,0,1,101,0.5\n", "");
+    for mut engine in engines(&prepared.module) {
+        assert_eq!(csv(&prepared, &mut *engine, ms(10, 6), true), changes);
+    }
+}
+
+#[test]
+fn times_are_in_the_unit_of_the_period() {
+    let prepared = prepare(&[], "t_us,Start\n2500,1\n");
+    let schedule = Schedule::for_scans(1_250_000, 3).unwrap();
+    let [mut interpreter, _] = engines(&prepared.module);
+    let text = csv(&prepared, &mut *interpreter, schedule, false);
+    assert_eq!(
+        text,
+        "t_us,Start,Stop,Lamp\n0,0,0,0\n1250,0,0,0\n2500,1,0,0\n"
+    );
+}
+
+#[test]
+fn a_value_change_dump_has_scopes_widths_and_changes() {
+    let prepared = prepare(&["t.ACC", "t.DN", "lamps", "r"], STIMULUS);
+    let expected = "\
+$timescale 1 ms $end
+$scope module latch $end
+$var wire 1 ! Start $end
+$var wire 1 \" Stop $end
+$var wire 1 # Lamp $end
+$var wire 16 $ lamps $end
+$var real 32 % r $end
+$scope module t $end
+$var wire 32 & ACC $end
+$var wire 1 ' DN $end
+$upscope $end
+$upscope $end
+$enddefinitions $end
+#0
+1!
+0\"
+0#
+b00000000000000000000000000000000 &
+0'
+b0000000000000000 $
+r0.5 %
+#10
+b00000000000000000000000000001010 &
+#20
+1#
+b00000000000000000000000000010100 &
+1'
+b0000000000000001 $
+#30
+";
+    for mut engine in engines(&prepared.module) {
+        let (mut text, schedule) = (Vec::new(), ms(10, 3));
+        let columns = prepared.session.columns();
+        let mut trace = VcdTrace::new(&mut text, "latch", columns, schedule).unwrap();
+        prepared
+            .session
+            .run(&mut *engine, schedule, &mut trace, &mut |_| {})
+            .unwrap();
+        trace.finish().unwrap();
+        assert_eq!(String::from_utf8(text).unwrap(), expected);
+    }
+}
+
+#[test]
+fn a_fault_ends_the_run_and_names_its_place() {
+    let prepared = prepare(&[], "t_ms,Stop\n15,1\n");
+    for mut engine in engines(&prepared.module) {
+        let error = prepared
+            .session
+            .run(&mut *engine, ms(10, 9), &mut NoTrace, &mut |_| {});
+        let error = error.unwrap_err();
+        assert!(matches!(
+            error,
+            RunError::Fault {
+                scan: 2,
+                now_ns: 20_000_000,
+                ..
+            }
+        ));
+        let diagnostic = error.to_diagnostic(&prepared.module);
+        assert_eq!(diagnostic.code, Code::E6014);
+        assert_eq!(
+            diagnostic.message,
+            "scan 2 at 20 ms was abandoned in Main rung 2: array index or bit number outside its bounds"
+        );
+    }
+}
+
+#[test]
+fn progress_ends_with_the_number_of_scans() {
+    let prepared = prepare(&[], "t_ms\n");
+    let [_, mut jit] = engines(&prepared.module);
+    let mut told = Vec::new();
+    prepared
+        .session
+        .run(&mut *jit, ms(1, 600), &mut NoTrace, &mut |done| {
+            told.push(done);
+        })
+        .unwrap();
+    assert_eq!(told.first(), Some(&0));
+    assert_eq!(told.last(), Some(&600));
+    assert!(told.is_sorted());
+}
+
+#[test]
+#[allow(clippy::disallowed_methods, reason = "the test looks at the file")]
+fn a_trace_file_appears_when_it_is_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    let prepared = prepare(&[], "t_ms,Start\n0,1\n");
+    for (name, begin) in [("a.csv", "t_ms,Start"), ("b.VCD", "$timescale 1 ms")] {
+        let path = folder.path().join(name);
+        let columns = prepared.session.columns();
+        let mut trace = TraceFile::create(&path, "latch", columns, ms(10, 1), false).unwrap();
+        trace.row(0, &[1, 0, 0]).unwrap();
+        assert!(!path.exists());
+        trace.finish().unwrap();
+        assert!(std::fs::read_to_string(&path).unwrap().starts_with(begin));
+    }
+    let dropped = folder.path().join("c.csv");
+    drop(TraceFile::create(&dropped, "latch", &[], ms(10, 1), false).unwrap());
+    assert_eq!(
+        std::fs::read_dir(folder.path()).unwrap().count(),
+        2,
+        "nothing half-written is left"
+    );
+}
+
+#[test]
+fn a_trace_without_a_place_or_format_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let create = |name: &str| {
+        let path = folder.path().join(name);
+        TraceFile::create(&path, "latch", &[], ms(10, 1), false)
+            .err()
+            .map(|d| d.code)
+    };
+    assert_eq!(create("missing/out.csv"), Some(Code::E6013));
+    assert_eq!(create("out.txt"), Some(Code::E6015));
+    assert_eq!(create("out"), Some(Code::E6015));
+}
