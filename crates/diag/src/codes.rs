@@ -68,6 +68,25 @@ codes! {
     E0001 Error "file cannot be read";
     E0002 Error "file is not UTF-8 text";
     E0003 Error "file is too large";
+    // 1 names
+    E1001 Error "tag does not exist";
+    E1002 Error "member does not exist";
+    E1003 Error "name is declared twice";
+    E1004 Error "alias stands for itself";
+    E1005 Error "alias does not stand for a tag";
+    E1007 Error "routine does not exist";
+    E1008 Error "instruction does not exist";
+    E1009 Error "program does not exist";
+    // 2 types and constants
+    E2001 Error "operand is of the wrong kind";
+    E2002 Error "index is outside the array";
+    E2003 Error "bit does not exist";
+    E2004 Error "wrong number of indexes";
+    E2005 Error "number does not fit its type";
+    E2007 Error "tags are too large";
+    E2008 Error "initial value does not fit its type";
+    E2009 Error "type contains itself";
+    E2010 Error "tag or member is of a type that is not compiled";
     // 5 ladder and L5X
     E5001 Error "XML is malformed";
     E5002 Error "file is not an L5X export";
@@ -76,6 +95,21 @@ codes! {
     E5005 Error "number does not fit 64 bits";
     E5006 Error "attribute or element is missing or malformed";
     E5007 Error "tag data is malformed";
+    E5020 Error "wrong number of operands";
+    E5021 Error "instruction is not compiled";
+    E5022 Error "not a Logix instruction";
+    E5023 Error "computed index is not compiled";
+    E5024 Error "Add-On Instruction is not compiled";
+    E5025 Error "language of a routine is not compiled";
+    E5026 Error "routine is encrypted";
+    E5027 Error "routine calls itself";
+    E5028 Warning "routine is not checked";
+    E5029 Error "status flag is not compiled";
+    E5030 Error "call does not fit the routine";
+    E5031 Error "SBR is not the first instruction";
+    E5032 Warning "routine has pending edits";
+    E5033 Error "form of operand is not compiled";
+    E5034 Error "tag values are given without names";
     // 6 configuration, tasks and addresses
     E6001 Error "duration is malformed";
     E6002 Error "period or length of the run is out of range";
@@ -92,6 +126,17 @@ codes! {
     E6013 Error "file cannot be written";
     E6014 Error "scan was abandoned by a fault";
     E6015 Error "format of the trace is unknown";
+    E6020 Error "nothing to run";
+    E6021 Error "more than one active task";
+    E6022 Error "kind of task is not compiled";
+    E6023 Warning "program is not scheduled";
+    E6024 Error "tag of a module is not compiled";
+    E6025 Error "configuration of a module is written";
+    E6026 Error "task setting is not compiled";
+    E6027 Error "kind of program is not compiled";
+    E6028 Warning "program has no main routine";
+    E6029 Error "parameter connection is not compiled";
+    E6030 Error "timer of the time base does not exist";
 }
 
 impl Code {

@@ -1,0 +1,137 @@
+//! From a source file to a module whose image is ready for the first scan.
+//!
+//! `load` reads, `check` decides what the program means, `compile` goes on to the IR and runs
+//! prescan over the initial values with the interpreter. Each reports everything it finds; each
+//! gives a result only when there is no error.
+
+use iecc_diag::{Code, Diagnostic, Diagnostics};
+use iecc_interp::run_prescan;
+use iecc_ir::{Module, verify};
+use iecc_lower::MILLISECOND_NS;
+use iecc_sema::hir::{self, StructKind};
+use iecc_sema::logix;
+use iecc_source::{FileId, SourceMap};
+use std::path::Path;
+
+/// Choices that the source does not make.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct FrontOptions {
+    /// What tags hold at the start.
+    pub init: logix::Init,
+    /// Which side of pending edits runs.
+    pub edits: logix::Edits,
+    /// What timers count.
+    pub timer_base: TimerBase,
+}
+
+/// The unit of timer presets.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TimerBase {
+    /// Of all timers but those below, in nanoseconds.
+    pub unit_ns: u64,
+    /// Timers, as users write them, with a unit of their own; the last of several counts.
+    pub timers: Vec<(String, u64)>,
+}
+
+impl Default for TimerBase {
+    fn default() -> Self {
+        Self {
+            unit_ns: MILLISECOND_NS,
+            timers: Vec::new(),
+        }
+    }
+}
+
+/// Reads a file into the map.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the driver is where files are read"
+)]
+pub fn load(map: &mut SourceMap, path: &Path, diagnostics: &mut Diagnostics) -> Option<FileId> {
+    let name = path.display().to_string();
+    let bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            let message = format!("{name}: {error}");
+            diagnostics.push(Diagnostic::without_place(Code::E0001, message));
+            return None;
+        }
+    };
+    match String::from_utf8(bytes) {
+        Ok(text) => Some(map.add(name, text)),
+        Err(error) => {
+            let offset = error.utf8_error().valid_up_to();
+            let message = format!("{name}: byte {offset} begins no UTF-8 character");
+            diagnostics.push(Diagnostic::without_place(Code::E0002, message));
+            None
+        }
+    }
+}
+
+/// Decides what the program of a file means.
+pub fn check(
+    map: &SourceMap,
+    file: FileId,
+    options: &FrontOptions,
+    diagnostics: &mut Diagnostics,
+) -> Option<hir::Program> {
+    let mut found = Diagnostics::new();
+    let project = iecc_l5x::read(file, map.file(file).text(), &mut found);
+    let program = project.map(|project| {
+        let options = logix::Options {
+            init: options.init,
+            edits: options.edits,
+        };
+        logix::analyze(&project, &options, &mut found)
+    });
+    found.sort();
+    let failed = found.has_errors();
+    diagnostics.append(found);
+    program.filter(|_| !failed)
+}
+
+/// Compiles the program of a file to a module that keeps the rules of the IR and whose image is
+/// that after prescan.
+pub fn compile(
+    map: &SourceMap,
+    file: FileId,
+    options: &FrontOptions,
+    diagnostics: &mut Diagnostics,
+) -> Option<Module> {
+    let program = check(map, file, options, diagnostics)?;
+    let lowering = lower_options(&program, &options.timer_base, diagnostics)?;
+    let mut module = iecc_lower::lower(&program, &lowering);
+    let verified = match verify(&module) {
+        Ok(verified) => verified,
+        Err(errors) => panic!("lowering broke the rules of the IR: {}", errors[0]),
+    };
+    // Prescan has no faults: it only stores.
+    module.image = run_prescan(verified).unwrap_or_else(|fault| panic!("prescan failed: {fault}"));
+    Some(module)
+}
+
+fn lower_options(
+    program: &hir::Program,
+    base: &TimerBase,
+    diagnostics: &mut Diagnostics,
+) -> Option<iecc_lower::Options> {
+    let mut timer_units = Vec::with_capacity(base.timers.len());
+    for (name, unit_ns) in &base.timers {
+        match program.find(name).filter(|place| is_timer(program, place)) {
+            Some(place) => timer_units.push((place, *unit_ns)),
+            None => {
+                let message = format!("the time base names `{name}`, which is no timer");
+                diagnostics.push(Diagnostic::without_place(Code::E6030, message));
+            }
+        }
+    }
+    (timer_units.len() == base.timers.len()).then_some(iecc_lower::Options {
+        timer_unit_ns: base.unit_ns,
+        timer_units,
+    })
+}
+
+fn is_timer(program: &hir::Program, place: &hir::Place) -> bool {
+    let kind = program.types.struct_kind(program.type_of(place));
+    kind == Some(StructKind::Timer)
+}
