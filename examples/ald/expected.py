@@ -109,19 +109,19 @@ def read_stimulus():
 
 
 def trace():
-    """The lines of expected.csv: the first scan, and every scan in which an output changed."""
+    """The lines of expected.csv: the first scan, and every scan in which a signal changed."""
     rows = list(read_stimulus())
     inputs = dict.fromkeys(INPUTS, False)
     reactor = Reactor()
     before = None
-    yield ",".join(["t_ms", *OUTPUTS])
+    yield ",".join(["t_ms", *INPUTS, *OUTPUTS])
     for now_ms in range(0, rows[-1][0] + PERIOD_MS, PERIOD_MS):
         while rows and rows[0][0] <= now_ms:
             inputs.update(rows.pop(0)[1])
-        outputs = reactor.scan(now_ms, inputs)
-        if outputs != before:
-            yield ",".join([str(now_ms), *(str(int(outputs[name])) for name in OUTPUTS)])
-        before = dict(outputs)
+        signals = {**inputs, **reactor.scan(now_ms, inputs)}
+        if signals != before:
+            yield ",".join([str(now_ms), *(str(int(value)) for value in signals.values())])
+        before = signals
 
 
 def main():

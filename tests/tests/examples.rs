@@ -4,11 +4,16 @@
     reason = "tests read files and run programs"
 )]
 
+use iecc_diag::Diagnostics;
+use iecc_driver::run::{CsvTrace, Request, Schedule, Session, Stimulus};
+use iecc_driver::{EngineKind, FrontOptions, Init, TimerBase, compile, load};
+use iecc_ir::Module;
+use iecc_source::SourceMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use iecc_diag::Diagnostics;
-use iecc_source::FileId;
+const ENGINES: [EngineKind; 2] = [EngineKind::Interp, EngineKind::Jit];
 
 fn example(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -16,13 +21,102 @@ fn example(path: &str) -> PathBuf {
         .join(path)
 }
 
+fn text_of(path: &str) -> String {
+    fs::read_to_string(example(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+/// The module of a program that gives no message at all.
+fn module_of(path: &str, options: &FrontOptions) -> Module {
+    let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
+    let file = load(&mut map, &example(path), &mut diagnostics).expect("the example is there");
+    let module = compile(&map, file, options, &mut diagnostics);
+    assert!(diagnostics.is_empty(), "{diagnostics:#?}");
+    module.expect("no errors")
+}
+
+/// The changes of a run with the stimulus of the ALD example, as a CSV.
+fn ald_trace(engine: EngineKind, options: &FrontOptions, schedule: Schedule) -> String {
+    let mut module = module_of("ald/ald.L5X", options);
+    let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
+    let file = map.add("stimulus.csv", text_of("ald/stimulus.csv"));
+    let stimulus = Stimulus::parse(file, map.file(file).text(), &mut diagnostics);
+    let request = Request {
+        watches: &[],
+        stimulus: stimulus.as_ref(),
+    };
+    let session = Session::prepare(&mut module, &request, &mut diagnostics);
+    assert!(diagnostics.is_empty(), "{diagnostics:#?}");
+    let (session, mut bytes) = (session.expect("no errors"), Vec::new());
+    let mut engine = engine.start(&module).expect("the engine starts");
+    let mut trace = CsvTrace::new(&mut bytes, session.columns(), schedule.unit(), true)
+        .expect("writing to memory");
+    session
+        .run(engine.as_mut(), schedule, &mut trace, &mut |_| {})
+        .expect("no fault");
+    trace.finish().expect("writing to memory");
+    String::from_utf8(bytes).expect("UTF-8")
+}
+
+fn until(period_ns: u64, length_ms: u64) -> Schedule {
+    Schedule::for_duration(period_ns, length_ms * 1_000_000).expect("in range")
+}
+
 #[test]
-fn the_ald_export_reads_without_a_message() {
-    let text = std::fs::read_to_string(example("ald/ald.L5X")).expect("the example is there");
-    let mut diagnostics = Diagnostics::new();
-    let project = iecc_l5x::read(FileId::from_index(0), &text, &mut diagnostics);
-    assert!(diagnostics.is_empty(), "{diagnostics:?}");
-    assert!(project.is_some());
+fn the_ald_trace_is_the_expected_one_on_every_engine() {
+    for init in [Init::Cold, Init::Export] {
+        let options = FrontOptions {
+            init,
+            ..FrontOptions::default()
+        };
+        for engine in ENGINES {
+            let trace = ald_trace(engine, &options, until(1_000_000, 2101));
+            assert_eq!(trace, text_of("ald/expected.csv"), "{engine:?} {init:?}");
+        }
+    }
+}
+
+/// The experiment of the paper: the two waits of 1 ms get a base of 1 us, and a cycle of deposition
+/// is 2 ms shorter. Measured from one opening of the precursor valve to the next, in scans of 1 us.
+///
+/// The first cycle takes its 167 ms and the one scan in which step 1 waits for its rung. With the
+/// fine waits the steps behind them begin 1 us and 2 us after a full millisecond; since timers of
+/// 1 ms count full milliseconds, they end at full ones, and the waits vanish.
+#[test]
+fn waits_with_a_base_of_one_microsecond_make_the_cycle_two_milliseconds_shorter() {
+    let timers = ["twait1", "twaitw"].map(|timer| (timer.to_owned(), 1000));
+    let fine = FrontOptions {
+        timer_base: TimerBase {
+            timers: timers.to_vec(),
+            ..TimerBase::default()
+        },
+        ..FrontOptions::default()
+    };
+    for engine in ENGINES {
+        let cycle_us = |options: &FrontOptions| {
+            let trace = ald_trace(engine, options, until(1000, 700));
+            let openings = openings_us(&trace, "SV1");
+            openings[1] - openings[0]
+        };
+        assert_eq!(cycle_us(&FrontOptions::default()), 167_001, "{engine:?}");
+        assert_eq!(cycle_us(&fine), 165_001, "{engine:?}");
+    }
+}
+
+/// The times at which a signal of a trace becomes 1.
+fn openings_us(trace: &str, signal: &str) -> Vec<u64> {
+    let (head, rows) = trace.split_once('\n').expect("a header");
+    let column = head.split(',').position(|name| name == signal);
+    let column = column.expect("the signal is in the trace");
+    let (mut openings, mut before) = (Vec::new(), "1");
+    for row in rows.lines() {
+        let now = row.split(',').nth(column).expect("a cell");
+        if (before, now) == ("0", "1") {
+            let time = row.split(',').next().expect("a time");
+            openings.push(time.parse().expect("a number"));
+        }
+        before = now;
+    }
+    openings
 }
 
 /// The expected trace is what the model of the process gives, so nobody can mend one by hand and

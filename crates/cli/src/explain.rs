@@ -1,27 +1,41 @@
-//! `iecc explain`: the page of a code, or the list of all codes.
+//! `iecc explain`: the page of a code or an instruction, or the list of all.
 
 use crate::terminal;
 use iecc_diag::Code;
+use iecc_driver::{explain_instruction, list_instructions};
 use std::fmt::Write;
-use std::process::ExitCode;
 
-/// Explain a message code, or list all of them
+/// Explain a message code or an instruction, or list all codes
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
-    /// A code such as E5003
+    /// A code such as E5003, an instruction such as TON, or `instructions` for the list of these
     topic: Option<String>,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> ExitCode {
-    let Some(topic) = &arguments.topic else {
-        terminal::print(&list_of_codes());
-        return ExitCode::SUCCESS;
+/// Prints the page.
+///
+/// # Errors
+/// There is no such topic.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), String> {
+    let page = match &arguments.topic {
+        None => list_of_codes(),
+        Some(topic) if topic.eq_ignore_ascii_case("instructions") => list_instructions(),
+        Some(topic) => page(topic)?,
     };
-    match Code::parse(topic) {
-        Some(code) => terminal::print(code.explanation()),
-        None => return unknown(topic),
+    terminal::print(&page);
+    Ok(())
+}
+
+fn page(topic: &str) -> Result<String, String> {
+    if let Some(code) = Code::parse(topic) {
+        return Ok(code.explanation().to_owned());
     }
-    ExitCode::SUCCESS
+    explain_instruction(topic).ok_or_else(|| {
+        format!(
+            "there is no code or instruction `{topic}`; `iecc explain` lists the codes and \
+             `iecc explain instructions` the instructions"
+        )
+    })
 }
 
 fn list_of_codes() -> String {
@@ -31,11 +45,4 @@ fn list_of_codes() -> String {
         writeln!(text, "{code}  {severity:7}  {}", code.title()).expect("writing to memory");
     }
     text
-}
-
-fn unknown(topic: &str) -> ExitCode {
-    terminal::complain(&format!(
-        "error: there is no code `{topic}`; `iecc explain` lists all"
-    ));
-    ExitCode::from(terminal::USAGE)
 }

@@ -1,13 +1,19 @@
 //! The program `iecc`: arguments in, files and messages out.
 //!
 //! Each command is one file. Results go to files or standard output, messages to standard error.
-//! Exit code 0: done; 1: the program has errors and nothing was written; 2: wrong usage;
-//! 101: a mistake in iecc itself, with a request to report it.
+//! Exit code 0: done; 1: the program has errors and nothing was built; 2: wrong usage; 101: a
+//! mistake in iecc itself, with a request to report it.
 
+mod check;
 mod explain;
+mod ir;
+mod messages;
+mod program;
+mod run;
 mod terminal;
 
 use clap::{Parser, Subcommand};
+use messages::{Format, Messages};
 use std::process::ExitCode;
 
 /// Compiles programs for industrial controllers.
@@ -16,19 +22,59 @@ use std::process::ExitCode;
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+
+    /// How messages are written to standard error
+    #[arg(
+        long,
+        global = true,
+        value_enum,
+        value_name = "FORMAT",
+        default_value = "text"
+    )]
+    message_format: Format,
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done; 1 the program has errors, nothing was written; 2 wrong usage.";
+Exit codes: 0 done; 1 the program has errors, nothing was built; 2 wrong usage.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Check(check::Arguments),
+    Run(run::Arguments),
+    Ir(ir::Arguments),
     Explain(explain::Arguments),
 }
 
 fn main() -> ExitCode {
     terminal::report_own_mistakes();
-    match Arguments::parse().command {
-        Command::Explain(arguments) => explain::run(&arguments),
+    let Arguments {
+        command,
+        message_format,
+    } = Arguments::parse();
+    let mut messages = Messages::default();
+    match command {
+        Command::Check(arguments) => check::run(&arguments, &mut messages),
+        Command::Run(arguments) => run::run(&arguments, &mut messages),
+        Command::Ir(arguments) => {
+            if let Err(error) = ir::run(&arguments, &mut messages) {
+                return terminal::wrong_usage(&error.to_string());
+            }
+        }
+        Command::Explain(arguments) => {
+            if let Err(error) = explain::run(&arguments) {
+                return terminal::wrong_usage(&error);
+            }
+        }
+    }
+    messages.finish(message_format)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        super::Arguments::command().debug_assert();
     }
 }

@@ -2,9 +2,23 @@
 
 use std::io::{self, Write};
 use std::panic;
+use std::process::ExitCode;
 
+/// Exit code: the program has errors.
+const ERRORS: u8 = 1;
 /// Exit code: wrong usage. clap uses the same.
-pub(crate) const USAGE: u8 = 2;
+const USAGE: u8 = 2;
+
+/// The exit code of a run whose program has errors.
+pub(crate) fn errors() -> ExitCode {
+    ExitCode::from(ERRORS)
+}
+
+/// Says what is wrong with the arguments, as clap does.
+pub(crate) fn wrong_usage(message: &str) -> ExitCode {
+    complain(&format!("error: {message}"));
+    ExitCode::from(USAGE)
+}
 
 /// Prints results. A reader that has gone away (`iecc explain | head`) is no mistake.
 pub(crate) fn print(text: &str) {

@@ -54,3 +54,31 @@ fn explain_alone_lists_every_code_on_a_line() {
     assert_eq!(lines[0], "E0001  error    file cannot be read");
     assert_eq!(lines.len(), iecc_diag::Code::ALL.len());
 }
+
+#[test]
+fn explain_knows_instructions_under_both_names() {
+    let old = iecc(&["explain", "lim"]);
+    assert_eq!(old.status.code(), Some(0));
+    assert!(
+        stdout(&old).starts_with("LIM(low limit, test, high limit), from revision 36 on LIMIT\n")
+    );
+    assert!(stdout(&old).ends_with("\ncompiled\n"));
+    assert_eq!(iecc(&["explain", "LIMIT"]).stdout, old.stdout);
+}
+
+#[test]
+fn explain_says_what_prescan_does() {
+    let output = iecc(&["explain", "TOF"]);
+    let sentence = "In prescan: the timer gets EN, TT and DN 0, and ACC equal to PRE.\n";
+    assert!(stdout(&output).contains(sentence), "{}", stdout(&output));
+}
+
+#[test]
+fn explain_lists_instructions_with_what_is_refused() {
+    let output = iecc(&["explain", "instructions"]);
+    let lines: Vec<_> = stdout(&output).lines().collect();
+    assert_eq!(lines[0], "XIC             compiled");
+    assert!(lines.contains(&"EQU     EQ      compiled"));
+    let refused = "JMP             refused: this version of iecc does not compile it yet";
+    assert!(lines.contains(&refused));
+}

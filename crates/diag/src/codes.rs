@@ -137,6 +137,15 @@ codes! {
     E6028 Warning "program has no main routine";
     E6029 Error "parameter connection is not compiled";
     E6030 Error "timer of the time base does not exist";
+    // 7 target cannot express this
+    E7001 Error "target cannot express a loop";
+    E7002 Error "target cannot express a division";
+    E7003 Error "target has no floating-point numbers";
+    E7004 Error "target cannot express a variable index";
+    E7005 Error "target cannot express a fault";
+    E7006 Error "target has no absolute time";
+    E7007 Error "program is too large for the target";
+    E7008 Error "option does not fit the program or the board";
 }
 
 impl Code {

@@ -8,19 +8,17 @@
 
 mod available;
 
-use crate::references::References;
 use crate::rewrite::Replacements;
 use available::Available;
 use cranelift_entity::SecondaryMap;
 use iecc_ir::analysis::{Cfg, Dominators};
-use iecc_ir::{BinaryOp, Block, Function, Inst, InstData, Module, Root, Terminator, Type, Value};
+use iecc_ir::{BinaryOp, Block, Function, Inst, InstData, Module, Terminator, Type, Value};
 use std::collections::HashMap;
 
 /// Shares common subexpressions in every function.
 pub(crate) fn cse(module: &mut Module) {
-    let references = References::of(module);
-    for (id, func) in module.funcs.iter_mut() {
-        Numbering::new(func, &|root| references.certain(id, root)).run();
+    for func in module.funcs.values_mut() {
+        Numbering::new(func).run();
     }
 }
 
@@ -45,12 +43,10 @@ struct Numbering<'f> {
     decided_trail: Vec<Value>,
     cfg: Cfg,
     children: SecondaryMap<Block, Vec<Block>>,
-    /// Whether a root is memory in every call.
-    certain: &'f dyn Fn(Root) -> bool,
 }
 
 impl<'f> Numbering<'f> {
-    fn new(func: &'f mut Function, certain: &'f dyn Fn(Root) -> bool) -> Self {
+    fn new(func: &'f mut Function) -> Self {
         let cfg = Cfg::new(func);
         let dominators = Dominators::new(&cfg);
         let mut children: SecondaryMap<Block, Vec<Block>> = SecondaryMap::new();
@@ -68,7 +64,6 @@ impl<'f> Numbering<'f> {
             decided_trail: Vec::new(),
             cfg,
             children,
-            certain,
         }
     }
 
@@ -230,10 +225,7 @@ impl<'f> Numbering<'f> {
                 true
             }
             InstData::Store { place, value } => {
-                available.changed(place);
-                if (self.certain)(place.root) {
-                    available.stored(place, *value);
-                }
+                available.stored(place, *value);
                 false
             }
             InstData::Elapsed { place, .. } => {

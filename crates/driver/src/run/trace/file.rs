@@ -2,6 +2,7 @@
 //! that no reader ever sees half of one.
 
 use super::{CsvTrace, Trace, VcdTrace};
+use crate::output::{cannot_write, temporary_in};
 use crate::run::Column;
 use crate::run::time::Schedule;
 use iecc_diag::{Code, Diagnostic};
@@ -93,23 +94,10 @@ impl Trace for TraceFile {
     }
 }
 
-/// A new file in the folder of `path`, with the rights of any new file.
+/// A new file in the folder of `path`.
 fn temporary(path: &Path) -> io::Result<NamedTempFile> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    let permissions = {
-        use std::os::unix::fs::PermissionsExt as _;
-        std::fs::Permissions::from_mode(0o666)
-    };
-    #[cfg(unix)]
-    builder.permissions(permissions);
-    builder.tempfile_in(folder.unwrap_or(Path::new(".")))
-}
-
-fn cannot_write(path: &Path, error: &io::Error) -> Diagnostic {
-    let message = format!("`{}` cannot be written: {error}", path.display());
-    Diagnostic::without_place(Code::E6013, message)
+    temporary_in(folder.unwrap_or(Path::new(".")))
 }

@@ -1,0 +1,170 @@
+//! `iecc run`: scans on an engine, with a stimulus, into traces.
+
+use crate::messages::Messages;
+use crate::program::Program;
+use clap::ValueEnum;
+use iecc_diag::Diagnostic;
+use iecc_driver::run::{Request, Schedule, Session, Stimulus, Trace, TraceFile, parse_duration};
+use iecc_driver::{EngineKind, load};
+use iecc_ir::Module;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{self, IsTerminal};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Execute scans of a program on this computer
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    program: Program,
+
+    /// How many scans
+    #[arg(
+        long,
+        value_name = "N",
+        required_unless_present = "length",
+        conflicts_with = "length"
+    )]
+    scans: Option<u64>,
+
+    /// For how long, such as 300s or 1m30s
+    #[arg(long = "for", id = "length", value_name = "TIME", value_parser = time)]
+    length_ns: Option<u64>,
+
+    /// The time from one scan to the next
+    #[arg(long = "period", value_name = "TIME", default_value = "10ms", value_parser = time)]
+    period_ns: u64,
+
+    /// What inputs and tags are set to, and when: a CSV file with a column t_ms or t_us
+    #[arg(long, value_name = "FILE")]
+    stimulus: Option<PathBuf>,
+
+    /// Where to write inputs, outputs and watched tags after each scan: FILE.csv or FILE.vcd; may
+    /// be given again
+    #[arg(long, value_name = "FILE")]
+    trace: Vec<PathBuf>,
+
+    /// Leave out rows of a CSV trace in which nothing changed
+    #[arg(long)]
+    changes: bool,
+
+    /// Tags to show in the traces, such as cycles.ACC,Step
+    #[arg(long, value_name = "TAGS", value_delimiter = ',')]
+    watch: Vec<String>,
+
+    /// What executes the scans
+    #[arg(long, value_enum, default_value = "jit")]
+    engine: EngineChoice,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum EngineChoice {
+    /// Machine code of this computer
+    Jit,
+    /// The reference interpreter: the definition of what the program means
+    Interp,
+}
+
+fn time(text: &str) -> Result<u64, String> {
+    parse_duration(text).map_err(|diagnostic| diagnostic.message)
+}
+
+pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
+    let Some(module) = arguments.program.compile(messages) else {
+        return;
+    };
+    let Some((module, session)) = arguments.prepare(module, messages) else {
+        return;
+    };
+    if let Err(found) = arguments.execute(&module, &session) {
+        for diagnostic in found {
+            messages.diagnostics.push(diagnostic);
+        }
+    }
+}
+
+impl Arguments {
+    /// Opens the module to what is set and shown.
+    fn prepare(&self, mut module: Module, messages: &mut Messages) -> Option<(Module, Session)> {
+        let stimulus = match &self.stimulus {
+            None => None,
+            Some(path) => {
+                let file = load(&mut messages.map, path, &mut messages.diagnostics)?;
+                let text = messages.map.file(file).text();
+                Some(Stimulus::parse(file, text, &mut messages.diagnostics)?)
+            }
+        };
+        let request = Request {
+            watches: &self.watch,
+            stimulus: stimulus.as_ref(),
+        };
+        let session = Session::prepare(&mut module, &request, &mut messages.diagnostics)?;
+        Some((module, session))
+    }
+
+    fn schedule(&self) -> Result<Schedule, Diagnostic> {
+        match (self.scans, self.length_ns) {
+            (Some(scans), _) => Schedule::for_scans(self.period_ns, scans),
+            (None, length_ns) => {
+                let length_ns = length_ns.expect("clap asks for one of the two");
+                Schedule::for_duration(self.period_ns, length_ns)
+            }
+        }
+    }
+
+    fn execute(&self, module: &Module, session: &Session) -> Result<(), Vec<Diagnostic>> {
+        let schedule = self.schedule().map_err(|d| vec![d])?;
+        let mut traces = Traces(Vec::new());
+        for path in &self.trace {
+            let columns = session.columns();
+            let trace = TraceFile::create(path, &module.name, columns, schedule, self.changes);
+            traces.0.push(trace.map_err(|d| vec![d])?);
+        }
+        let mut engine = self.engine().start(module)?;
+        let bar = progress_bar(schedule.scans());
+        let told = session.run(engine.as_mut(), schedule, &mut traces, &mut |scan| {
+            bar.set_position(scan);
+        });
+        bar.finish_and_clear();
+        // After a fault the scans before it are worth seeing.
+        let told = told.map_err(|error| error.to_diagnostic(module));
+        let written = traces.finish();
+        told.and(written).map_err(|d| vec![d])
+    }
+
+    fn engine(&self) -> EngineKind {
+        match self.engine {
+            EngineChoice::Jit => EngineKind::Jit,
+            EngineChoice::Interp => EngineKind::Interp,
+        }
+    }
+}
+
+/// All traces of a run.
+struct Traces(Vec<TraceFile>);
+
+impl Trace for Traces {
+    fn row(&mut self, now_ns: u64, values: &[u64]) -> io::Result<()> {
+        self.0
+            .iter_mut()
+            .try_for_each(|trace| trace.row(now_ns, values))
+    }
+}
+
+impl Traces {
+    fn finish(self) -> Result<(), Diagnostic> {
+        self.0.into_iter().try_for_each(TraceFile::finish)
+    }
+}
+
+/// Shown on a terminal only, and only when the run takes long enough to be worth it.
+fn progress_bar(scans: u64) -> ProgressBar {
+    if !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} scans, {eta} left");
+    let bar = ProgressBar::no_length().with_style(style.expect("the template is right"));
+    bar.set_length(scans);
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}

@@ -1,0 +1,101 @@
+//! Pipelines of passes, and the text of a module after any of them.
+
+use iecc_ir::{Module, print_module};
+use iecc_passes::{HARDWARE, PASSES, SOFTWARE, Settings, run_pipeline};
+use std::fmt;
+
+/// A list of passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pipeline {
+    /// For targets that are hardware.
+    Hardware,
+    /// For engines that run instructions one after the other.
+    Software,
+}
+
+impl Pipeline {
+    /// The names of its passes, in order.
+    pub fn passes(self) -> &'static [&'static str] {
+        match self {
+            Self::Hardware => HARDWARE,
+            Self::Software => SOFTWARE,
+        }
+    }
+
+    /// Runs all of it.
+    pub(crate) fn run(self, module: &mut Module, settings: &Settings) {
+        self.run_part(module, self.passes().len(), settings);
+    }
+
+    fn run_part(self, module: &mut Module, end: usize, settings: &Settings) {
+        run_pipeline(module, &self.passes()[..end], settings, &mut |_, _| {})
+            .expect("pipelines list passes that exist");
+    }
+}
+
+/// A place in a pipeline: after this run of this pass.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct After {
+    /// The pass.
+    pub pass: String,
+    /// Which of its runs, from 1.
+    pub run: usize,
+}
+
+/// The pipeline has no such place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NoSuchPlace {
+    pipeline: Pipeline,
+    after: After,
+}
+
+impl fmt::Display for NoSuchPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let After { pass, run } = &self.after;
+        let runs = self.pipeline.passes().iter().filter(|name| *name == pass);
+        match runs.count() {
+            0 => write!(f, "the pipeline has no pass `{pass}`; ")?,
+            runs => write!(f, "the pipeline runs `{pass}` {runs} times, not {run}; ")?,
+        }
+        write!(f, "it is {}", self.pipeline.passes().join(", "))
+    }
+}
+
+impl std::error::Error for NoSuchPlace {}
+
+/// Prints a module: as it is, or after a pipeline, run to its end or to the place given. Nothing is
+/// assumed about the period of scans.
+///
+/// # Errors
+/// The pipeline has no such place.
+pub fn show(
+    mut module: Module,
+    pipeline: Option<Pipeline>,
+    after: Option<&After>,
+) -> Result<String, NoSuchPlace> {
+    if let Some(pipeline) = pipeline {
+        let passes = pipeline.passes();
+        let end = match after {
+            None => passes.len(),
+            Some(after) => place(passes, after).ok_or_else(|| NoSuchPlace {
+                pipeline,
+                after: after.clone(),
+            })?,
+        };
+        pipeline.run_part(&mut module, end, &Settings::default());
+    }
+    Ok(print_module(&module))
+}
+
+/// How many passes run up to a place.
+fn place(passes: &[&str], after: &After) -> Option<usize> {
+    let mut runs = (1..).zip(passes).filter(|(_, name)| **name == after.pass);
+    runs.nth(after.run.checked_sub(1)?).map(|(count, _)| count)
+}
+
+/// Every pass with what it does, a line each.
+pub fn list_passes() -> String {
+    let width = PASSES.iter().map(|pass| pass.name.len()).max().unwrap_or(0);
+    let line = |pass: &iecc_passes::Pass| format!("{:width$}  {}\n", pass.name, pass.what);
+    PASSES.iter().map(line).collect()
+}
