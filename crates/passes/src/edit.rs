@@ -144,9 +144,33 @@ impl<'f> BlockEditor<'f> {
         self.value(InstData::Compare { op, args: [x, k] }, Type::I1)
     }
 
-    /// Puts the instructions into the block.
-    pub(crate) fn finish(self) {
+    /// `cond ? yes : no`; a known condition and equal arms are folded, an inverse is turned around.
+    pub(crate) fn select(&mut self, cond: Value, yes: Value, no: Value) -> Value {
+        if yes == no {
+            return yes;
+        }
+        match self.func.def_inst(cond) {
+            Some(InstData::Const { bits: 0, .. }) => no,
+            Some(InstData::Const { .. }) => yes,
+            Some(InstData::Unary {
+                op: UnaryOp::Not,
+                arg,
+            }) => {
+                let cond = *arg;
+                self.select(cond, no, yes)
+            }
+            _ => {
+                let ty = self.func.value_type(yes);
+                let args = [yes, no];
+                self.value(InstData::Select { cond, args }, ty)
+            }
+        }
+    }
+
+    /// Puts the instructions into the block; gives the function back.
+    pub(crate) fn finish(self) -> &'f mut Function {
         self.func.block_mut(self.block).insts = self.out;
+        self.func
     }
 }
 

@@ -19,9 +19,12 @@ mod early_compare;
 mod edit;
 mod fold;
 mod functions;
+mod if_convert;
 mod inline;
+mod promote;
 mod range;
 mod range_fold;
+mod references;
 mod rewrite;
 mod saturate;
 mod scan_form;
@@ -86,6 +89,30 @@ pub const PASSES: &[Pass] = &[
         run: |module, _| step_time::run(module),
     },
     Pass {
+        name: "promote",
+        what: "keeps scalars of memory in values from the entry to the return",
+        why_here: "after inlining, when a scan sees all uses of its state",
+        run: |module, _| promote::promote(module),
+    },
+    Pass {
+        name: "promote_few",
+        what: "the same in functions that touch few scalars",
+        why_here: "instead of promote where values cost registers",
+        run: |module, _| promote::promote_few(module),
+    },
+    Pass {
+        name: "if_convert",
+        what: "makes one block of a function without loops and faults, branches become choices",
+        why_here: "after promotion, which leaves few stores that depend on a branch",
+        run: |module, _| if_convert::if_convert(module),
+    },
+    Pass {
+        name: "if_convert_small",
+        what: "makes choices of branches around a handful of operations",
+        why_here: "after promotion and folding, which make arms small",
+        run: |module, _| if_convert::if_convert_small(module),
+    },
+    Pass {
         name: "range_fold",
         what: "decides and weakens comparisons by what values can be",
         why_here: "when the scan is one block, so that ranges are known",
@@ -112,11 +139,33 @@ pub const PASSES: &[Pass] = &[
 ];
 
 /// For engines that run instructions one after the other. Keeps the layout of all regions.
-pub const SOFTWARE: &[&str] = &["inline_small", "fold", "cse", "fold", "dce"];
+pub const SOFTWARE: &[&str] = &[
+    "inline_small",
+    "fold",
+    "promote_few",
+    "fold",
+    "if_convert_small",
+    "fold",
+    "cse",
+    "fold",
+    "dce",
+];
 
 /// For hardware: ends in a scan of one block without calls, if nothing in the program loops or
 /// faults. The layout of the state may change.
-pub const HARDWARE: &[&str] = &["inline", "fold", "cse", "fold", "dce"];
+pub const HARDWARE: &[&str] = &[
+    "inline",
+    "fold",
+    "step_time",
+    "promote",
+    "fold",
+    "cse",
+    "if_convert",
+    "fold",
+    "cse",
+    "fold",
+    "dce",
+];
 
 /// The passes after which the state at the end of a scan is no longer what the program says, in
 /// layout or in value: for targets that publish outputs only. All others keep it bit for bit.

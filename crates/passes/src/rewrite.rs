@@ -2,7 +2,7 @@
 
 use cranelift_entity::{SecondaryMap, packed_option::PackedOption};
 use iecc_ir::analysis::Cfg;
-use iecc_ir::{Function, Value};
+use iecc_ir::{Function, Target, Terminator, Value};
 
 /// Values that are to be read in place of others. Follows chains, so a replacement may itself be
 /// replaced later.
@@ -50,4 +50,29 @@ pub(crate) fn remove_unreachable(func: &mut Function) -> bool {
     let cfg = Cfg::new(func);
     func.layout.retain(|&block| cfg.is_reachable(block));
     func.layout.len() != before
+}
+
+/// Makes all returns jump to one.
+pub(crate) fn join_returns(func: &mut Function) {
+    let returns: Vec<_> = func
+        .layout
+        .iter()
+        .copied()
+        .filter(|&block| matches!(func.terminator(block), Terminator::Return(_)))
+        .collect();
+    if returns.len() < 2 {
+        return;
+    }
+    let join = func.add_block();
+    let results = func.results.clone();
+    let params = results.iter().map(|&ty| func.add_param(join, ty)).collect();
+    func.set_terminator(join, Terminator::Return(params), None);
+    for block in returns {
+        let origin = func.block(block).terminator_origin;
+        let Terminator::Return(args) = func.terminator(block).clone() else {
+            panic!("only returns are joined")
+        };
+        let jump = Terminator::Jump(Target { block: join, args });
+        func.set_terminator(block, jump, origin);
+    }
 }

@@ -5,7 +5,8 @@
 
 use iecc_diag::{Code, Diagnostic, closest};
 use iecc_ir::{
-    Index, InstData, Layout, MemType, Module, Place, PlaceType, Projection, Root, StructId, Type,
+    FieldDef, Index, InstData, Layout, MemType, Module, Place, PlaceType, Projection, Root,
+    StructId, Type,
 };
 use iecc_source::Span;
 use std::collections::{BTreeMap, BTreeSet};
@@ -90,15 +91,9 @@ impl<'m> Names<'m> {
         names
     }
 
-    fn fields_of(&self, root: Root) -> &'m [iecc_ir::FieldDef] {
-        let module = self.module;
-        let id = match root {
-            Root::State => module.state,
-            Root::Input => module.input,
-            Root::Output => module.output,
-            Root::Ref(_) => panic!("regions have names, references have not"),
-        };
-        &module.types.structs[id].fields
+    fn fields_of(&self, root: Root) -> &'m [FieldDef] {
+        let id = region_of(self.module, root).expect("regions have fields");
+        &self.module.types.structs[id].fields
     }
 
     fn add(&mut self, name: &'m str, place: Place) {
@@ -237,15 +232,20 @@ fn bit(before: &str, place: Place, ty: Type, name: &str) -> Result<Place, NameEr
     }
 }
 
+/// The struct of a region; references are none.
+fn region_of(module: &Module, root: Root) -> Option<StructId> {
+    match root {
+        Root::State => Some(module.state),
+        Root::Input => Some(module.input),
+        Root::Output => Some(module.output),
+        Root::Ref(_) => None,
+    }
+}
+
 /// What lies at a static place of a region.
 pub(super) fn type_of(module: &Module, place: &Place) -> Option<PlaceType> {
-    let id = match place.root {
-        Root::State => module.state,
-        Root::Input => module.input,
-        Root::Output => module.output,
-        Root::Ref(_) => return None,
-    };
-    Place::walk(&module.types, MemType::Struct(id), &place.path)
+    let start = MemType::Struct(region_of(module, place.root)?);
+    Place::walk(&module.types, start, &place.path)
 }
 
 /// The values at a place, each with its path below `name`. Times that `elapsed` keeps are left out:
@@ -334,7 +334,8 @@ fn kept_times(module: &Module) -> BTreeSet<(StructId, u32)> {
 }
 
 fn last_member(module: &Module, place: &Place) -> Option<(StructId, u32)> {
-    member_at_end(module, MemType::Struct(module.state), &place.path)
+    let start = MemType::Struct(region_of(module, place.root)?);
+    member_at_end(module, start, &place.path)
 }
 
 fn member_at_end(module: &Module, start: MemType, path: &[Projection]) -> Option<(StructId, u32)> {

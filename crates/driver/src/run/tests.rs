@@ -7,6 +7,7 @@ use iecc_diag::{Code, Diagnostics};
 use iecc_interp::Interpreter;
 use iecc_ir::{Module, parse_module, verify};
 use iecc_jit::Jit;
+use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_source::FileId;
 use iecc_target::Engine;
 
@@ -66,11 +67,15 @@ fn prepare(watches: &[&str], stimulus: &str) -> Prepared {
     Prepared { module, session }
 }
 
-fn engines(module: &Module) -> [Box<dyn Engine>; 2] {
+/// The interpreter, machine code, and machine code after the passes.
+fn engines(module: &Module) -> [Box<dyn Engine>; 3] {
     let verified = verify(module).unwrap();
+    let mut passed = module.clone();
+    run_pipeline(&mut passed, SOFTWARE, &Settings::default(), &mut |_, _| {}).unwrap();
     [
         Box::new(Interpreter::new(verified)),
         Box::new(Jit::new(verified).unwrap()),
+        Box::new(Jit::new(verify(&passed).unwrap()).unwrap()),
     ]
 }
 
@@ -122,7 +127,7 @@ t_ms,Start,Stop,Lamp,t.DN,t.PRE,t.ACC,lamps.0,LAMPS,r
 fn times_are_in_the_unit_of_the_period() {
     let prepared = prepare(&[], "t_us,Start\n2500,1\n");
     let schedule = Schedule::for_scans(1_250_000, 3).unwrap();
-    let [mut interpreter, _] = engines(&prepared.module);
+    let [mut interpreter, ..] = engines(&prepared.module);
     let text = csv(&prepared, &mut *interpreter, schedule, false);
     assert_eq!(
         text,
@@ -205,7 +210,7 @@ fn a_fault_ends_the_run_and_names_its_place() {
 #[test]
 fn progress_ends_with_the_number_of_scans() {
     let prepared = prepare(&[], "t_ms\n");
-    let [_, mut jit] = engines(&prepared.module);
+    let [.., mut jit] = engines(&prepared.module);
     let mut told = Vec::new();
     prepared
         .session
@@ -253,4 +258,36 @@ fn a_trace_without_a_place_or_format_is_refused() {
     assert_eq!(create("missing/out.csv"), Some(Code::E6013));
     assert_eq!(create("out.txt"), Some(Code::E6015));
     assert_eq!(create("out"), Some(Code::E6015));
+}
+
+/// Each example of a mistake in a stimulus, named after the code it gives, against [`LATCH`].
+#[test]
+#[allow(clippy::disallowed_methods, reason = "the test reads the examples")]
+fn every_example_of_a_bad_stimulus_gives_its_code() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/codes");
+    let mut seen = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|end| end != "csv") {
+            continue;
+        }
+        let code = Code::parse(path.file_stem().unwrap().to_str().unwrap()).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut diagnostics = Diagnostics::new();
+        if let Some(stimulus) = Stimulus::parse(FileId::from_index(0), &text, &mut diagnostics) {
+            let mut module = parse_module(LATCH).unwrap();
+            let request = Request {
+                stimulus: Some(&stimulus),
+                ..Request::default()
+            };
+            Session::prepare(&mut module, &request, &mut diagnostics);
+        }
+        let found: Vec<Code> = diagnostics.iter().map(|d| d.code).collect();
+        assert_eq!(found, [code], "{}", path.display());
+        seen.push(code);
+    }
+    seen.sort();
+    let of_stimuli = |code: &&Code| (Code::E6003..=Code::E6012).contains(*code);
+    let expected: Vec<Code> = Code::ALL.iter().filter(of_stimuli).copied().collect();
+    assert_eq!(seen, expected);
 }

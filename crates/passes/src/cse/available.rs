@@ -44,9 +44,8 @@ impl Available {
     }
 
     /// A place was given a value. Where an index is outside, a load gives 0 and not what was
-    /// stored, so places with index values are not remembered.
+    /// stored, so places with index values are not remembered. `changed` comes first.
     pub(super) fn stored(&mut self, place: &Place, value: Value) {
-        self.changed(place);
         if place.is_static() {
             self.loaded(place, value);
         }

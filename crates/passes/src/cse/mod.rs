@@ -8,17 +8,19 @@
 
 mod available;
 
+use crate::references::References;
 use crate::rewrite::Replacements;
 use available::Available;
 use cranelift_entity::SecondaryMap;
 use iecc_ir::analysis::{Cfg, Dominators};
-use iecc_ir::{BinaryOp, Block, Function, Inst, InstData, Module, Terminator, Type, Value};
+use iecc_ir::{BinaryOp, Block, Function, Inst, InstData, Module, Root, Terminator, Type, Value};
 use std::collections::HashMap;
 
 /// Shares common subexpressions in every function.
 pub(crate) fn cse(module: &mut Module) {
-    for func in module.funcs.values_mut() {
-        Numbering::new(func).run();
+    let references = References::of(module);
+    for (id, func) in module.funcs.iter_mut() {
+        Numbering::new(func, &|root| references.certain(id, root)).run();
     }
 }
 
@@ -43,10 +45,12 @@ struct Numbering<'f> {
     decided_trail: Vec<Value>,
     cfg: Cfg,
     children: SecondaryMap<Block, Vec<Block>>,
+    /// Whether a root is memory in every call.
+    certain: &'f dyn Fn(Root) -> bool,
 }
 
 impl<'f> Numbering<'f> {
-    fn new(func: &'f mut Function) -> Self {
+    fn new(func: &'f mut Function, certain: &'f dyn Fn(Root) -> bool) -> Self {
         let cfg = Cfg::new(func);
         let dominators = Dominators::new(&cfg);
         let mut children: SecondaryMap<Block, Vec<Block>> = SecondaryMap::new();
@@ -64,6 +68,7 @@ impl<'f> Numbering<'f> {
             decided_trail: Vec::new(),
             cfg,
             children,
+            certain,
         }
     }
 
@@ -225,7 +230,10 @@ impl<'f> Numbering<'f> {
                 true
             }
             InstData::Store { place, value } => {
-                available.stored(place, *value);
+                available.changed(place);
+                if (self.certain)(place.root) {
+                    available.stored(place, *value);
+                }
                 false
             }
             InstData::Elapsed { place, .. } => {

@@ -595,3 +595,102 @@ fn folding_keeps_the_meaning_of_random_expressions() {
         same_behaviour(&before, &after, true, &format!("seed {seed}"));
     }
 }
+
+/// A scan whose blocks jump to any later blocks: every graph without loops can come of it.
+fn random_forward_graph(random: &mut Random, blocks: u64) -> Module {
+    let mut module = module(&format!(
+        "{HEADER}fn @scan[]() -> () {{\nb0:\n  return\n}}\n"
+    ));
+    let mut builder = FunctionBuilder::new("scan", &[], &[]);
+    let variables = [TYPES, TYPES]
+        .concat()
+        .into_iter()
+        .map(|ty| (ty, builder.declare(ty)))
+        .collect();
+    let mut generator = Generator {
+        random,
+        builder,
+        variables,
+        instance: Place::root(Root::State).field(8),
+        callees: Vec::new(),
+        is_scan: true,
+        left: u32::MAX,
+    };
+    for (field, ty) in TYPES_OF_IO.into_iter().enumerate() {
+        let place = Place::root(Root::Input).field(field as u32);
+        let value = generator.builder.load(place, ty);
+        generator.assign(value);
+    }
+    let later: Vec<Block> = (0..blocks)
+        .map(|_| generator.builder.create_block())
+        .collect();
+    for next in 0..later.len() {
+        generator.small_statements();
+        generator.jump_on(&later[next..]);
+        generator.builder.seal(later[next]);
+        generator.builder.switch_to(later[next]);
+    }
+    generator.leave();
+    module.funcs[module.scan] = generator.builder.finish();
+    module
+}
+
+impl Generator<'_> {
+    fn small_statements(&mut self) {
+        for _ in 0..self.random.below(4) {
+            let value = self.expression();
+            self.assign(value);
+            if self.random.one_in(3) {
+                let (place, ty) = self.state_place();
+                let value = self.value(ty);
+                self.builder.store(place, value);
+            }
+        }
+    }
+
+    fn jump_on(&mut self, later: &[Block]) {
+        // Near blocks more often, so that graphs are deep.
+        let mut near = || {
+            let reach = [2, 4, later.len()][self.random.below(3) as usize];
+            later[self.random.below(reach.min(later.len()) as u64) as usize]
+        };
+        let targets = [near(), near(), near()];
+        match self.random.below(4) {
+            0 => self.builder.jump(targets[0]),
+            1 => {
+                let value = self.value(Type::I8);
+                let cases = vec![(0, targets[1]), (1, targets[2]), (255, targets[1])];
+                self.builder.switch(value, cases, targets[0]);
+            }
+            _ => {
+                let cond = self.value(Type::I1);
+                self.builder.brif(cond, targets[0], targets[1]);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_graph_without_loops_becomes_one_block_that_does_the_same() {
+    for seed in 1..600 {
+        let blocks = 2 + seed % 14;
+        let before = random_forward_graph(&mut Random::new(seed), blocks);
+        for passes in [
+            &["promote", "if_convert"][..],
+            &["if_convert_small"],
+            HARDWARE,
+            SOFTWARE,
+        ] {
+            let mut after = before.clone();
+            let same_state = !passes.iter().any(|name| CHANGE_STATE.contains(name));
+            let mut compare = |name: &str, module: &Module| {
+                let when = format!("seed {seed}, up to {name}");
+                same_behaviour(&before, module, same_state, &when);
+            };
+            run_pipeline(&mut after, passes, &Settings::default(), &mut compare).unwrap();
+            if passes.contains(&"if_convert") {
+                assert_eq!(after.funcs[after.scan].layout.len(), 1, "seed {seed}");
+            }
+        }
+    }
+}

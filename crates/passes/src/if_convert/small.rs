@@ -1,0 +1,172 @@
+//! Small choices: a branch around a handful of cheap operations costs more than doing them.
+
+use crate::rewrite::{Replacements, remove_unreachable};
+use cranelift_entity::{EntitySet, SecondaryMap};
+use iecc_ir::analysis::Cfg;
+use iecc_ir::{BinaryOp, Block, Function, InstData, Module, Target, Terminator, UnaryOp, Value};
+
+/// How many operations both arms may have together, and how many choices may come of it.
+const MAX_OPERATIONS: usize = 6;
+const MAX_CHOICES: usize = 3;
+
+/// Converts branches whose arms are cheap and meet at once, inner ones first. Loops and faults
+/// elsewhere do not matter.
+pub(crate) fn if_convert_small(module: &mut Module) {
+    for func in module.funcs.values_mut() {
+        convert(func);
+    }
+}
+
+fn convert(func: &mut Function) {
+    remove_unreachable(func);
+    let mut ways_in: SecondaryMap<Block, u32> = SecondaryMap::new();
+    for &block in &func.layout {
+        for target in func.terminator(block).targets() {
+            ways_in[target.block] += 1;
+        }
+    }
+    let mut conversion = Conversion {
+        ways_in,
+        gone: EntitySet::new(),
+        replacements: Replacements::default(),
+    };
+    let order = Cfg::new(func).reverse_postorder().to_vec();
+    for &block in order.iter().rev() {
+        while let Some(choice) = Choice::at(func, block, &conversion.ways_in) {
+            conversion.write(func, block, choice);
+        }
+    }
+    func.layout
+        .retain(|&block| !conversion.gone.contains(block));
+    conversion.replacements.apply(func);
+}
+
+struct Conversion {
+    ways_in: SecondaryMap<Block, u32>,
+    gone: EntitySet<Block>,
+    replacements: Replacements,
+}
+
+impl Conversion {
+    fn write(&mut self, func: &mut Function, block: Block, choice: Choice) {
+        let origin = func.block(block).terminator_origin;
+        for arm in choice.arms.into_iter().flatten() {
+            let insts = std::mem::take(&mut func.block_mut(arm).insts);
+            func.block_mut(block).insts.extend(insts);
+            self.gone.insert(arm);
+        }
+        let [yes, no] = choice.ends;
+        let mut target = Target::new(yes.block);
+        for (&yes, &no) in yes.args.iter().zip(&no.args) {
+            let args = [yes, no].map(|value| self.replacements.find(value));
+            let value = if args[0] == args[1] {
+                args[0]
+            } else {
+                let cond = choice.cond;
+                let ty = func.value_type(yes);
+                let data = InstData::Select { cond, args };
+                let inst = func.append_inst(block, data, &[ty], origin);
+                func.result(inst)
+            };
+            target.args.push(value);
+        }
+        self.ways_in[target.block] -= 1;
+        if self.ways_in[target.block] == 1 {
+            self.merge(func, block, &target);
+        } else {
+            func.set_terminator(block, Terminator::Jump(target), origin);
+        }
+    }
+
+    /// Goes on in the block where the arms met, so that a branch around it finds one arm.
+    fn merge(&mut self, func: &mut Function, block: Block, next: &Target) {
+        let behind = std::mem::take(func.block_mut(next.block));
+        for (&param, &arg) in behind.params.iter().zip(&next.args) {
+            self.replacements.replace(param, arg);
+        }
+        let data = func.block_mut(block);
+        data.insts.extend(behind.insts);
+        data.terminator = behind.terminator;
+        data.terminator_origin = behind.terminator_origin;
+        self.gone.insert(next.block);
+    }
+}
+
+/// A branch that can be converted.
+struct Choice {
+    cond: Value,
+    arms: [Option<Block>; 2],
+    /// What each arm passes to the block where they meet.
+    ends: [Target; 2],
+}
+
+impl Choice {
+    fn at(func: &Function, block: Block, ways_in: &SecondaryMap<Block, u32>) -> Option<Self> {
+        let Terminator::Brif {
+            cond,
+            then,
+            otherwise,
+        } = func.terminator(block)
+        else {
+            return None;
+        };
+        let sides = [then, otherwise].map(|target| arm(func, target, ways_in));
+        // Either both arms meet, or one of them is the block where the other ends.
+        let candidates = [
+            (sides[0].clone(), sides[1].clone()),
+            (sides[0].clone(), Some((None, otherwise.clone()))),
+            (Some((None, then.clone())), sides[1].clone()),
+            (Some((None, then.clone())), Some((None, otherwise.clone()))),
+        ];
+        let (a, b) = candidates.into_iter().find_map(|(a, b)| {
+            let (a, b) = (a?, b?);
+            (a.1.block == b.1.block && a.1.block != block).then_some((a, b))
+        })?;
+        let choice = Self {
+            cond: *cond,
+            arms: [a.0, b.0],
+            ends: [a.1, b.1],
+        };
+        choice.is_cheap(func).then_some(choice)
+    }
+
+    fn is_cheap(&self, func: &Function) -> bool {
+        let arms = self.arms.iter().flatten();
+        let insts = arms.flat_map(|&arm| &func.block(arm).insts);
+        let is_constant = |data: &InstData| matches!(data, InstData::Const { .. });
+        let operations = insts.filter(|&&inst| !is_constant(func.inst(inst))).count();
+        let differ = self.ends[0].args.iter().zip(&self.ends[1].args);
+        let choices = differ.filter(|(a, b)| a != b).count();
+        operations <= MAX_OPERATIONS && choices <= MAX_CHOICES
+    }
+}
+
+/// A block with one way in, cheap operations only, and a jump; and what it passes on.
+fn arm(
+    func: &Function,
+    target: &Target,
+    ways_in: &SecondaryMap<Block, u32>,
+) -> Option<(Option<Block>, Target)> {
+    let data = func.block(target.block);
+    let cheap = data.insts.iter().all(|&inst| is_cheap(func.inst(inst)));
+    match func.terminator(target.block) {
+        Terminator::Jump(end) if cheap && data.params.is_empty() && ways_in[target.block] == 1 => {
+            Some((Some(target.block), end.clone()))
+        }
+        _ => None,
+    }
+}
+
+fn is_cheap(data: &InstData) -> bool {
+    match data {
+        InstData::Binary { op, .. } => !matches!(
+            op,
+            BinaryOp::Sdiv | BinaryOp::Udiv | BinaryOp::Srem | BinaryOp::Urem | BinaryOp::Fdiv
+        ),
+        InstData::Unary { op, .. } => *op != UnaryOp::Fsqrt,
+        InstData::Step { .. } => false,
+        // Every load is legal; one from a fixed place is a few cycles.
+        InstData::Load { place } => place.is_static(),
+        data => data.is_pure(),
+    }
+}

@@ -1,0 +1,80 @@
+//! Promotion: scalars of memory become values for the length of a function.
+//!
+//! After it, a promoted scalar is loaded once, at the entry, and only if its old value is needed;
+//! and stored once, at the only return, and only if it was written to. Nothing is stored on the
+//! way to a fault, which leaves memory as it was before the scan. Bits of a promoted word are taken
+//! and put by shifts and masks.
+//!
+//! What is promoted: static scalars that nothing else in the function may overlap, no index value,
+//! `elapsed`, reference or callee; outputs only if every way to the return stores them, since their
+//! old value cannot be loaded. References may be the same as each other and lie in the state, so
+//! a function that uses two of these roots promotes neither. Nor is a reference that may be to nothing
+//! promoted where it is stored to.
+
+mod candidates;
+mod rename;
+mod summary;
+
+use crate::references::References;
+use crate::rewrite::{join_returns, remove_unreachable};
+use candidates::Candidates;
+use iecc_ir::{Function, MemType, Module, Place, PlaceType, Root, Type, TypeTable};
+use summary::Summaries;
+
+/// How many scalars a function may hold in values for machine code: with more, loads and stores
+/// where they are needed are cheaper than all of them at the entry and the return.
+const FEW: usize = 48;
+
+/// Promotes what can be promoted in every function.
+pub(crate) fn promote(module: &mut Module) {
+    run(module, usize::MAX);
+}
+
+/// Promotes in functions that touch few scalars.
+pub(crate) fn promote_few(module: &mut Module) {
+    run(module, FEW);
+}
+
+/// A scalar that becomes a variable.
+#[derive(Debug)]
+struct Promoted {
+    /// Without a bit, but for outputs, whose bits are variables of their own.
+    place: Place,
+    ty: Type,
+    is_stored: bool,
+}
+
+fn run(module: &mut Module, limit: usize) {
+    let summaries = Summaries::of(module);
+    let regions = [
+        (Root::State, module.state),
+        (Root::Input, module.input),
+        (Root::Output, module.output),
+    ];
+    let references = References::of(module);
+    for (id, func) in module.funcs.iter_mut() {
+        remove_unreachable(func);
+        let types = &module.types;
+        let type_of = |func: &Function, place: &Place| {
+            let region = regions.iter().find(|(root, _)| *root == place.root);
+            let start = match (region, place.root) {
+                (_, Root::Ref(param)) => func.refs[param].ty,
+                (Some(&(_, id)), _) => MemType::Struct(id),
+                (None, _) => panic!("every root is a region or a reference"),
+            };
+            scalar_type(types, start, place)
+        };
+        let certain = |root| references.certain(id, root);
+        let promoted = Candidates::of(func, &summaries).promoted(func, &certain, &type_of);
+        if !promoted.is_empty() && promoted.len() <= limit {
+            join_returns(func);
+            rename::rename(func, &promoted);
+        }
+    }
+}
+
+fn scalar_type(types: &TypeTable, start: MemType, place: &Place) -> Type {
+    Place::walk(types, start, &place.path)
+        .and_then(PlaceType::scalar)
+        .expect("accesses are of scalars")
+}
