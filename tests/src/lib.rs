@@ -9,5 +9,6 @@ pub mod mutate;
 pub mod random_ir;
 pub mod rng;
 pub mod rung_text;
+pub mod runs;
 pub mod shared;
 pub mod stimulus;

@@ -1,0 +1,146 @@
+//! Whole runs as `iecc run` makes them, on every engine, into rows that a test can compare.
+
+use iecc_diag::{Diagnostics, render_text};
+use iecc_driver::run::{Request, Schedule, Session, Stimulus, Trace};
+use iecc_driver::{FrontOptions, compile, load};
+use iecc_interp::Interpreter;
+use iecc_ir::{Module, verify};
+use iecc_jit::Jit;
+use iecc_passes::{SOFTWARE, Settings, run_pipeline};
+use iecc_source::SourceMap;
+use iecc_target::Engine;
+use std::io;
+use std::path::Path;
+
+/// The columns of a run and what they held after each scan.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Rows {
+    /// Names of the columns.
+    pub columns: Vec<String>,
+    /// Times in nanoseconds and values, as a trace shows them.
+    pub rows: Vec<(u64, Vec<i64>)>,
+}
+
+impl Rows {
+    /// These columns only, in this order, which must all exist.
+    #[must_use]
+    pub fn select(&self, names: &[&str]) -> Self {
+        let position = |name: &&str| {
+            let found = self
+                .columns
+                .iter()
+                .position(|c| c.eq_ignore_ascii_case(name));
+            found.unwrap_or_else(|| panic!("no column {name} among {:?}", self.columns))
+        };
+        let wanted: Vec<usize> = names.iter().map(position).collect();
+        let select = |values: &Vec<i64>| wanted.iter().map(|&at| values[at]).collect();
+        Self {
+            columns: names.iter().map(|&name| name.to_owned()).collect(),
+            rows: self
+                .rows
+                .iter()
+                .map(|(now, values)| (*now, select(values)))
+                .collect(),
+        }
+    }
+
+    /// The first row and those that differ from the one before.
+    #[must_use]
+    pub fn changes(mut self) -> Self {
+        self.rows.dedup_by(|row, before| row.1 == before.1);
+        self
+    }
+}
+
+struct Recorder<'s> {
+    session: &'s Session,
+    rows: Rows,
+}
+
+impl Trace for Recorder<'_> {
+    fn row(&mut self, now_ns: u64, values: &[u64]) -> io::Result<()> {
+        let columns = self.session.columns().iter();
+        // A BOOL is 0 or 1, not -1.
+        let values = columns.zip(values).map(|(column, &bits)| match column.ty {
+            iecc_ir::Type::I1 => bits as i64,
+            ty => ty.signed(bits),
+        });
+        self.rows.rows.push((now_ns, values.collect()));
+        Ok(())
+    }
+}
+
+/// The module of a Logix export that compiles.
+///
+/// # Panics
+/// With the messages, if it does not.
+pub fn compiled(path: &Path, options: &FrontOptions) -> Module {
+    let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
+    let file = load(&mut map, path, &mut diagnostics);
+    let module = file.and_then(|file| compile(&map, file, options, &mut diagnostics));
+    module.unwrap_or_else(|| panic!("{}", messages(&map, &diagnostics)))
+}
+
+fn messages(map: &SourceMap, diagnostics: &Diagnostics) -> String {
+    let texts = diagnostics.iter().map(|d| render_text(map, d, false));
+    texts.collect::<Vec<_>>().join("\n")
+}
+
+/// The module opened for a run with a stimulus (CSV) and watched paths.
+///
+/// # Panics
+/// With the messages, if they do not fit.
+pub fn opened(mut module: Module, stimulus: &str, watches: &[&str]) -> (Module, Session) {
+    let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
+    let file = map.add("stimulus.csv", stimulus);
+    let stimulus = Stimulus::parse(file, stimulus, &mut diagnostics);
+    let watches: Vec<String> = watches.iter().map(|&w| w.to_owned()).collect();
+    let request = Request {
+        watches: &watches,
+        stimulus: stimulus.as_ref(),
+    };
+    let session = Session::prepare(&mut module, &request, &mut diagnostics);
+    match session.filter(|_| diagnostics.is_empty()) {
+        Some(session) => (module, session),
+        None => panic!("{}", messages(&map, &diagnostics)),
+    }
+}
+
+/// Every engine of this computer with its name: the interpreter on the module as it stands, machine
+/// code of that, and machine code as `iecc run` makes it, after the passes.
+pub fn engines(module: &Module) -> Vec<(&'static str, Box<dyn Engine>)> {
+    let verified = verify(module).expect("the module keeps the rules");
+    let mut passed = module.clone();
+    run_pipeline(&mut passed, SOFTWARE, &Settings::default(), &mut |_, _| {})
+        .expect("the passes exist");
+    let passed = verify(&passed).expect("passes keep the rules");
+    vec![
+        ("interpreter", Box::new(Interpreter::new(verified))),
+        (
+            "machine code",
+            Box::new(Jit::new(verified).expect("it fits")),
+        ),
+        (
+            "machine code after passes",
+            Box::new(Jit::new(passed).expect("it fits")),
+        ),
+    ]
+}
+
+/// Runs a session to its end.
+///
+/// # Panics
+/// If a scan is abandoned.
+pub fn rows(session: &Session, engine: &mut dyn Engine, schedule: Schedule) -> Rows {
+    let columns = session.columns().iter().map(|column| column.name.clone());
+    let mut recorder = Recorder {
+        session,
+        rows: Rows {
+            columns: columns.collect(),
+            rows: Vec::new(),
+        },
+    };
+    let result = session.run(engine, schedule, &mut recorder, &mut |_| {});
+    result.unwrap_or_else(|error| panic!("{error:?}"));
+    recorder.rows
+}
