@@ -2,11 +2,9 @@
 
 use iecc_diag::{Diagnostics, render_text};
 use iecc_driver::run::{Request, Schedule, Session, Stimulus, Trace};
-use iecc_driver::{FrontOptions, compile, load};
-use iecc_interp::Interpreter;
+use iecc_driver::{EngineKind, FrontOptions, compile, load};
 use iecc_ir::{Module, verify};
 use iecc_jit::Jit;
-use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_source::SourceMap;
 use iecc_target::Engine;
 use std::io;
@@ -106,24 +104,22 @@ pub fn opened(mut module: Module, stimulus: &str, watches: &[&str]) -> (Module, 
     }
 }
 
-/// Every engine of this computer with its name: the interpreter on the module as it stands, machine
-/// code of that, and machine code as `iecc run` makes it, after the passes.
+/// Every engine of this computer with its name: those that users can choose, and machine code of
+/// the module as it stands, before the passes.
+///
+/// # Panics
+/// If an engine cannot run the module.
 pub fn engines(module: &Module) -> Vec<(&'static str, Box<dyn Engine>)> {
+    let start = |kind: EngineKind| {
+        kind.start(module)
+            .unwrap_or_else(|found| panic!("{found:?}"))
+    };
     let verified = verify(module).expect("the module keeps the rules");
-    let mut passed = module.clone();
-    run_pipeline(&mut passed, SOFTWARE, &Settings::default(), &mut |_, _| {})
-        .expect("the passes exist");
-    let passed = verify(&passed).expect("passes keep the rules");
+    let unchanged = Jit::new(verified).unwrap_or_else(|errors| panic!("{errors:?}"));
     vec![
-        ("interpreter", Box::new(Interpreter::new(verified))),
-        (
-            "machine code",
-            Box::new(Jit::new(verified).expect("it fits")),
-        ),
-        (
-            "machine code after passes",
-            Box::new(Jit::new(passed).expect("it fits")),
-        ),
+        ("interpreter", start(EngineKind::Interp)),
+        ("machine code", start(EngineKind::Jit)),
+        ("machine code without passes", Box::new(unchanged)),
     ]
 }
 
