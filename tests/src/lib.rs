@@ -2,8 +2,10 @@
 //! targets use as well, file tests in the text form of the IR, and the comparison of engines.
 
 pub mod check;
+pub mod corpus;
 pub mod differential;
 pub mod filetest;
+pub mod ladder;
 pub mod leaves;
 pub mod mutate;
 pub mod random_ir;

@@ -120,11 +120,12 @@ impl Reader<'_, '_> {
 
     /// Text in an array of SINT, the `DATA` of a string.
     fn characters(&mut self, ty: Type, text: &Name, keep: bool) {
-        let inner = text
-            .node
-            .trim()
-            .strip_prefix('\'')
-            .and_then(|t| t.strip_suffix('\''));
+        // Text stands between quotes; an empty text may stand without them.
+        let quoted = text.node.trim();
+        let inner = match quoted {
+            "" => Some(""),
+            _ => quoted.strip_prefix('\'').and_then(|t| t.strip_suffix('\'')),
+        };
         let bytes = inner.and_then(|raw| {
             StringLiteral {
                 raw: raw.to_owned(),
