@@ -29,6 +29,7 @@ mod rewrite;
 mod saturate;
 mod scan_form;
 mod settings;
+mod split;
 mod state;
 mod step_time;
 
@@ -81,6 +82,12 @@ pub const PASSES: &[Pass] = &[
         what: "drops what nobody can see: instructions, parameters, blocks, functions",
         why_here: "last, and before passes whose work grows with what is there",
         run: |module, _| dce::dce(module),
+    },
+    Pass {
+        name: "split",
+        what: "makes bits of words whose bits are separate things",
+        why_here: "after inlining and folding, when all accesses are seen and indices are constant",
+        run: |module, _| split::split(module),
     },
     Pass {
         name: "step_time",
@@ -156,6 +163,7 @@ pub const SOFTWARE: &[&str] = &[
 pub const HARDWARE: &[&str] = &[
     "inline",
     "fold",
+    "split",
     "step_time",
     "promote",
     "fold",
@@ -169,7 +177,7 @@ pub const HARDWARE: &[&str] = &[
 
 /// The passes after which the state at the end of a scan is no longer what the program says, in
 /// layout or in value: for targets that publish outputs only. All others keep it bit for bit.
-pub const CHANGE_STATE: &[&str] = &["step_time", "state", "saturate", "early_compare"];
+pub const CHANGE_STATE: &[&str] = &["split", "step_time", "state", "saturate", "early_compare"];
 
 /// There is no pass of this name.
 #[derive(Debug, Clone, PartialEq, Eq)]
