@@ -1,0 +1,77 @@
+//! The sets agree: every code has a page, and an example that gives it, alone of its kind.
+#![expect(clippy::disallowed_methods, reason = "tests read files")]
+
+use iecc_diag::{Code, Diagnostics, Severity};
+use iecc_driver::{FrontOptions, compile, load};
+use iecc_source::SourceMap;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// Codes that no export gives, and what gives them instead.
+fn given_elsewhere(code: Code) -> bool {
+    let name = code.as_str();
+    // No file at all; 256 MiB of text; the command line; the stimulus, whose examples are tables
+    // that the tests of runs read; and targets, whose own tests hold what they refuse.
+    ["E0001", "E0003", "E6030"].contains(&name)
+        || ("E6001".."E6020").contains(&name)
+        || name.starts_with("E7")
+}
+
+fn examples() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("codes")
+}
+
+fn codes_of(path: &std::path::Path) -> Vec<(Code, Severity)> {
+    let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
+    if let Some(file) = load(&mut map, path, &mut diagnostics) {
+        compile(&map, file, &FrontOptions::default(), &mut diagnostics);
+    }
+    let found = diagnostics.iter();
+    found
+        .map(|diagnostic| (diagnostic.code, diagnostic.severity))
+        .collect()
+}
+
+#[test]
+fn every_example_gives_its_code_and_no_other_error() {
+    for &code in Code::ALL.iter().filter(|code| !given_elsewhere(**code)) {
+        let path = examples().join(format!("{code}.L5X"));
+        let found = codes_of(&path);
+        assert!(
+            found.contains(&(code, code.severity())),
+            "{} gives {found:?}",
+            path.display()
+        );
+        let others = found.iter().filter(|(other, _)| *other != code);
+        // A file about something else than tasks need not have one.
+        let errors: Vec<_> = others
+            .filter(|(other, severity)| *severity == Severity::Error && *other != Code::E6020)
+            .collect();
+        assert!(errors.is_empty(), "{} gives {errors:?}", path.display());
+    }
+}
+
+#[test]
+fn every_example_belongs_to_a_code() {
+    let known: BTreeSet<&str> = Code::ALL.iter().map(|code| code.as_str()).collect();
+    for entry in std::fs::read_dir(examples()).expect("the folder of examples") {
+        let path = entry.expect("readable").path();
+        let stem = path
+            .file_stem()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        assert!(known.contains(stem.as_str()), "{}", path.display());
+    }
+}
+
+#[test]
+fn every_page_says_what_it_means_shows_an_example_and_how_to_mend_it() {
+    for &code in Code::ALL {
+        let page = code.explanation();
+        let head = format!("# {code}: {}\n\n", code.title());
+        assert!(page.starts_with(&head), "{code}: {page}");
+        assert!(page.contains("\nExample"), "{code} has no example");
+        assert!(page.contains("\nTo mend it, "), "{code} says no mend");
+    }
+}
