@@ -4,7 +4,7 @@ use iecc_ir::{Module, print_module, verify};
 use iecc_jit::Jit;
 use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_tests::differential::{Agreement, compare_engines, interpreter};
-use iecc_tests::random_ir::{Options, random_module};
+use iecc_tests::random_ir::{Options, random_module, seeds};
 use iecc_tests::rng::Rng;
 use iecc_tests::stimulus::random_stimulus;
 
@@ -14,7 +14,7 @@ const SCANS: usize = 20;
 /// The module as it stands and as `iecc run` compiles it, against the module as it stands.
 #[test]
 fn machine_code_does_what_the_interpreter_does() {
-    for seed in 0..SEEDS {
+    for seed in seeds(SEEDS) {
         let module = random_module(seed, &Options::all());
         check(&module, &module, seed);
         let mut optimised = module.clone();
