@@ -22,9 +22,10 @@
 //! ```
 //!
 //! The expected result of a pass stands in lines that begin `;> `: all functions, and the head of
-//! the module if the pass changed it. `IECC_BLESS=1` rewrites them. Every run is repeated after the
-//! pipeline for software, which must change nothing, and after the one for hardware, which must not
-//! change outputs. A pass is also compared with the module before it on random inputs.
+//! the module if the pass changed it. `IECC_BLESS=1` rewrites them. Every run is made on the
+//! interpreter and as machine code, and repeated after the pipeline for software, which must change
+//! nothing, and after the one for hardware, which must not change outputs. A pass is also compared
+//! with the module before it on random inputs.
 
 mod directives;
 mod pass;

@@ -1,12 +1,13 @@
 //! Runs scans and compares what comes out with what the file expects.
 
 use super::directives::{Column, ExpectedFault, RunTest};
-use crate::differential::{Agreement, interpreter};
+use crate::differential::{Agreement, Subject, interpreter};
 use crate::leaves::{Leaf, Spot, leaves, parse_value, value_text};
-use iecc_interp::{Interpreter, run_prescan};
+use iecc_interp::run_prescan;
 use iecc_ir::{Module, Region, verify};
+use iecc_jit::Jit;
 use iecc_passes::{HARDWARE, SOFTWARE, Settings, run_pipeline};
-use iecc_target::{Engine, Fault, region_bytes};
+use iecc_target::{Fault, region_bytes};
 
 /// Runs the module as it stands and after the pipelines.
 pub(super) fn check(module: &Module, test: &RunTest) -> Result<(), String> {
@@ -38,16 +39,32 @@ fn prepared(module: &Module, test: &RunTest) -> Result<Module, String> {
     Ok(module)
 }
 
-/// Runs the module as it stands.
+/// Runs the module as it stands on the interpreter and as machine code.
 pub(super) fn check_once(
     module: &Module,
     test: &RunTest,
     agreement: Agreement,
 ) -> Result<(), String> {
     let mut engine = interpreter(module);
-    if let Some(fuel) = test.fuel {
-        engine = engine.with_fuel(fuel);
+    // Fuel is the interpreter's own; machine code has another measure.
+    match test.fuel {
+        Some(fuel) => run_on(&mut engine.with_fuel(fuel), module, test, agreement),
+        None => {
+            run_on(&mut engine, module, test, agreement)?;
+            let verified = verify(module).map_err(|errors| errors[0].to_string())?;
+            let mut jit = Jit::new(verified).map_err(|errors| errors[0].message.clone())?;
+            run_on(&mut jit, module, test, agreement)
+                .map_err(|error| format!("as machine code: {error}"))
+        }
     }
+}
+
+fn run_on(
+    engine: &mut dyn Subject,
+    module: &Module,
+    test: &RunTest,
+    agreement: Agreement,
+) -> Result<(), String> {
     let columns = Columns::new(module, test, agreement)?;
     let mut regions = Regions {
         inputs: region_bytes(module, Region::Input),
@@ -55,7 +72,7 @@ pub(super) fn check_once(
     };
     for (scan, &now_ns) in test.times_ns.iter().enumerate() {
         columns
-            .scan(scan, now_ns, &mut engine, &mut regions)
+            .scan(scan, now_ns, engine, &mut regions)
             .map_err(|error| format!("scan {scan}: {error}"))?;
     }
     Ok(())
@@ -108,7 +125,7 @@ impl Columns {
         &self,
         scan: usize,
         now_ns: u64,
-        engine: &mut Interpreter,
+        engine: &mut dyn Subject,
         regions: &mut Regions,
     ) -> Result<(), String> {
         for track in &self.inputs {
@@ -120,7 +137,7 @@ impl Columns {
             track.check(scan, &regions.outputs)?;
         }
         for track in &self.states {
-            track.check(scan, engine.state())?;
+            track.check(scan, engine.state_bytes())?;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use crate::rng::Rng;
 use crate::stimulus::random_bits;
 use iecc_ir::{
     BinaryOp, Block, CompareOp, FaultCode, Function, FunctionBuilder, MemType, Module, Origin,
-    Place, PlaceType, Root, Type, Value, Variable,
+    Place, Root, Type, Value, Variable,
 };
 
 /// How deep statements nest.
@@ -137,7 +137,7 @@ impl<'a> Body<'a> {
         self.origin();
         let nest = depth > 0 && self.statements > 0;
         let cheap = self.cost < MAX_COST / 4;
-        match self.rng.below(20) {
+        match self.rng.below(22) {
             0..=2 => self.assign(),
             3..=5 => self.store(),
             6 | 7 => self.call(),
@@ -149,6 +149,7 @@ impl<'a> Body<'a> {
             15 if self.options.faults && self.rng.one_in(3) => self.fault(),
             16 | 17 if self.options.timers => self.timer(),
             18 | 19 => self.accumulate(),
+            20 | 21 => self.overlap(),
             _ => self.assign(),
         }
     }
@@ -197,6 +198,32 @@ impl<'a> Body<'a> {
         self.spend(3);
     }
 
+    /// Loads a place before and after a store that may change it.
+    fn overlap(&mut self) {
+        let ty = self.random_type();
+        let is_ref = |route: &Route| matches!(route.root, Root::Ref(_));
+        let by_ref = self.place(|route| route.is_value(ty) && is_ref(route));
+        let one = by_ref.or_else(|| self.place(|route| route.is_value(ty) && route.is_kept()));
+        let other = self.shared_place(|route| route.is_value(ty) && route.is_kept());
+        let (Some(mut one), Some(mut other)) = (one, other) else {
+            return;
+        };
+        if self.rng.one_in(3) {
+            other = one.clone();
+        }
+        if self.rng.one_in(2) {
+            std::mem::swap(&mut one, &mut other);
+        }
+        let value = self.value(ty);
+        let before = self.builder.load(one.clone(), ty);
+        self.builder.store(other, value);
+        let after = self.builder.load(one, ty);
+        self.spend(3);
+        for value in [before, after] {
+            self.show(ty, value);
+        }
+    }
+
     /// An on-delay timer: counts to a constant while a condition holds. Its time runs in every
     /// scan, or only while it counts.
     fn timer(&mut self) {
@@ -231,6 +258,14 @@ impl<'a> Body<'a> {
         self.spend(16);
     }
 
+    /// Stores where it is seen at once, if there is an output of the type.
+    fn show(&mut self, ty: Type, value: Value) {
+        match self.place(|route| route.root == Root::Output && route.is_value(ty)) {
+            Some(place) => self.builder.store(place, value),
+            None => self.store_value(ty, value),
+        }
+    }
+
     /// A call that keeps the cost of this function within the limit.
     fn call(&mut self) {
         let left = MAX_COST.saturating_sub(self.cost) / self.turns;
@@ -242,8 +277,7 @@ impl<'a> Body<'a> {
         let callee = self.rng.pick(&callees);
         let mut refs = Vec::new();
         for &ty in &callee.refs {
-            let fits = |route: &Route| route.end == PlaceType::Mem(ty) && route.is_kept();
-            refs.push(self.place(fits).expect("the state holds every type"));
+            refs.push(self.referenced_place(ty));
         }
         let args = callee.params.iter().map(|&ty| self.value(ty)).collect();
         self.spend(callee.cost);

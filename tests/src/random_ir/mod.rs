@@ -109,7 +109,7 @@ pub fn random_module(seed: u64, options: &Options) -> Module {
     let types = RandomTypes::new(rng, options);
     let mut module = empty_module(&types, rng);
     let mut callees = Vec::new();
-    for index in 0..rng.below(options.functions + 1) {
+    for index in 0..options.functions.min(1 + rng.below(options.functions + 1)) {
         let refs = types.random_refs(rng);
         let params = types.random_values(rng, 3);
         let results = types.random_values(rng, 2);

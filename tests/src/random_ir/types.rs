@@ -41,16 +41,12 @@ impl RandomTypes {
         }
         // A state that holds each type once makes every reference type callable.
         let mut state = fields(rng, &memory, &mut table, 4);
-        for (index, &ty) in memory.iter().enumerate() {
-            let name = format!("each{index}");
-            state.push(FieldDef { name, ty });
-        }
+        state.extend(each(&memory));
         memory.extend(state.iter().map(|field| field.ty));
         state.extend(timers(&mut table));
-        let (inputs, outputs) = (
-            fields(rng, &memory[..values.len()], &mut table, 4),
-            fields(rng, &memory[..values.len()], &mut table, 4),
-        );
+        let inputs = fields(rng, &memory[..values.len()], &mut table, 4);
+        let mut outputs = fields(rng, &memory[..values.len()], &mut table, 2);
+        outputs.extend(each(&memory[..values.len()]));
         Self {
             state: table.add_struct("state", state),
             input: table.add_struct("input", inputs),
@@ -74,8 +70,25 @@ impl RandomTypes {
     }
 
     pub(super) fn random_refs(&self, rng: &mut Rng) -> Vec<MemType> {
-        (0..rng.below(3)).map(|_| rng.pick(&self.memory)).collect()
+        let scalars = &self.memory[..self.values.len()];
+        let count = rng.below(4);
+        let kinds = [scalars, self.memory.as_slice()];
+        (0..count)
+            .map(|_| {
+                let kind = rng.pick(&kinds);
+                rng.pick(kind)
+            })
+            .collect()
     }
+}
+
+/// One field of each type.
+fn each(memory: &[MemType]) -> Vec<FieldDef> {
+    let fields = memory.iter().enumerate().map(|(index, &ty)| FieldDef {
+        name: format!("each{index}"),
+        ty,
+    });
+    fields.collect()
 }
 
 fn timers(table: &mut TypeTable) -> impl Iterator<Item = FieldDef> + use<> {
@@ -106,7 +119,7 @@ fn fields(rng: &mut Rng, memory: &[MemType], table: &mut TypeTable, least: usize
     let mut fields = Vec::with_capacity(count);
     for index in 0..count {
         let mut ty = rng.pick(memory);
-        while rng.one_in(4) {
+        while rng.one_in(3) {
             ty = MemType::Array(table.array(ty, 1 + rng.below(4) as u32));
         }
         let name = if index == 1 {

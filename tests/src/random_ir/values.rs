@@ -3,7 +3,9 @@
 use super::body::Body;
 use super::places::{Route, Step};
 use crate::stimulus::random_bits;
-use iecc_ir::{BinaryOp, CompareOp, ConvertOp, Index, Place, Root, Type, UnaryOp, Value};
+use iecc_ir::{
+    BinaryOp, CompareOp, ConvertOp, Index, MemType, Place, PlaceType, Root, Type, UnaryOp, Value,
+};
 
 /// How deep expressions nest.
 const DEPTH: u32 = 4;
@@ -128,6 +130,32 @@ impl Body<'_> {
         }
     }
 
+    /// A place for a reference: as often as not one whose index may be out of bounds.
+    pub(super) fn referenced_place(&mut self, ty: MemType) -> Place {
+        let fits = |route: &Route| route.end == PlaceType::Mem(ty) && route.is_kept();
+        let in_array = |route: &Route| matches!(route.steps.last(), Some(Step::Element(_)));
+        let element = self.rng.one_in(2);
+        let element = element.then(|| self.place(|route| fits(route) && in_array(route)));
+        let place = element.flatten().or_else(|| self.shared_place(fits));
+        place.expect("the state holds every type")
+    }
+
+    /// A place that fits; every other time the first such field of the state, so that the places of
+    /// different functions and statements are often the same.
+    pub(super) fn shared_place(&mut self, fits: impl Fn(&Route) -> bool) -> Option<Place> {
+        let favourite = |route: &Route| route.root == Root::State && route.steps.len() == 1;
+        let favourite = self
+            .routes
+            .iter()
+            .find(|route| favourite(route) && fits(route));
+        match favourite.map(|route| route.steps[0]) {
+            Some(Step::Field(field)) if self.rng.one_in(2) => {
+                Some(Place::root(Root::State).field(field))
+            }
+            Some(Step::Field(_) | Step::Element(_) | Step::Bit(_)) | None => self.place(fits),
+        }
+    }
+
     /// A place that fits, its indices filled in.
     pub(super) fn place(&mut self, fits: impl Fn(&Route) -> bool) -> Option<Place> {
         let routes: Vec<usize> = (0..self.routes.len())
@@ -157,7 +185,8 @@ impl Body<'_> {
         if self.rng.one_in(3) {
             return Index::Value(value);
         }
-        let mask = u64::from(len.next_power_of_two() - 1);
+        let reach = len.next_power_of_two() << self.rng.below(2);
+        let mask = u64::from(reach - 1);
         let mask = self.builder.constant(Type::I32, mask);
         self.spend(2);
         Index::Value(self.builder.binary(BinaryOp::And, value, mask))
