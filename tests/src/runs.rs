@@ -58,10 +58,14 @@ struct Recorder<'s> {
 impl Trace for Recorder<'_> {
     fn row(&mut self, now_ns: u64, values: &[u64]) -> io::Result<()> {
         let columns = self.session.columns().iter();
-        // A BOOL is 0 or 1, not -1.
-        let values = columns.zip(values).map(|(column, &bits)| match column.ty {
-            iecc_ir::Type::I1 => bits as i64,
-            ty => ty.signed(bits),
+        let values = columns.zip(values).map(|(column, &bits)| {
+            let is_bool = column.ty == iecc_ir::Type::I1;
+            // A BOOL is 0 or 1, not -1.
+            if is_bool {
+                bits as i64
+            } else {
+                column.ty.signed(bits)
+            }
         });
         self.rows.rows.push((now_ns, values.collect()));
         Ok(())

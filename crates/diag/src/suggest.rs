@@ -1,14 +1,15 @@
 //! "Did you mean": the known name closest to a misspelled one.
 
 /// The candidate closest to `name`, ignoring ASCII case, if it is close enough to be meant: at most
-/// a third of the letters differ, and never all. Of equally close ones the first. Names of more than
+/// a third of the letters and at most three differ, and never all. Of equally close ones the first. Names of more than
 /// 64 letters get no suggestion, which keeps the work small.
 pub fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     let wanted: Vec<char> = name.to_ascii_lowercase().chars().collect();
     if wanted.len() > 64 {
         return None;
     }
-    let limit = wanted.len().div_ceil(3).min(wanted.len().saturating_sub(1));
+    let third = wanted.len().div_ceil(3);
+    let limit = third.min(3).min(wanted.len().saturating_sub(1));
     let measured = candidates.into_iter().filter_map(|candidate| {
         let other: Vec<char> = candidate.to_ascii_lowercase().chars().collect();
         let close = other.len().abs_diff(wanted.len()) <= limit;

@@ -7,12 +7,11 @@
 use super::Analysis;
 use super::operands::{Slot, literal_of};
 use super::operation::Checker;
-use super::suggest::nearest;
 use super::tasks::{RoutineIndex, routine_named};
 use crate::hir::{Action, Condition, Const, Elementary, Operand, Place, PouId, Type};
 use iecc_ast::logix::RoutineBody;
 use iecc_ast::rung::{self, Instruction};
-use iecc_diag::{Code, Diagnostic};
+use iecc_diag::{Code, Diagnostic, closest};
 
 impl Analysis<'_> {
     /// The places of an SBR, the first instruction of a routine.
@@ -183,7 +182,7 @@ impl Checker<'_> {
             );
             let diagnostic = Diagnostic::new(Code::E1007, name.span, message);
             let names = program.routines.iter().map(|r| r.name.node.as_str());
-            analysis.report(match nearest(&name.node, names) {
+            analysis.report(match closest(&name.node, names) {
                 Some(near) => diagnostic.fix(format!("did you mean `{near}`?"), name.span, near),
                 None => diagnostic,
             });

@@ -3,13 +3,12 @@
 
 use super::operation::Checker;
 use super::routines::Signature;
-use super::suggest::nearest;
 use super::tasks::{RoutineIndex, Schedule};
 use super::types::fold;
 use super::{Analysis, instructions};
 use crate::hir::{self, PouId};
 use iecc_ast::rung::{Element, Instruction};
-use iecc_diag::{Code, Diagnostic};
+use iecc_diag::{Code, Diagnostic, closest};
 use instructions::{INSTRUCTIONS, Meaning, NOT_LOGIX, Reason, Row};
 
 /// Which routine is checked.
@@ -164,7 +163,7 @@ impl<'p> Analysis<'p> {
         let project = self.project;
         let mut known: Vec<&str> = built_in.collect();
         known.extend(project.instructions.iter().map(|i| i.name.node.as_str()));
-        diagnostic = match nearest(&name.node, known) {
+        diagnostic = match closest(&name.node, known) {
             Some(near) => diagnostic.fix(format!("did you mean `{near}`?"), name.span, near),
             None => diagnostic
                 .note("if it is an Add-On Instruction, export it together with the routine"),

@@ -15,7 +15,6 @@ mod operands;
 mod operation;
 mod reference;
 mod routines;
-mod suggest;
 mod symbols;
 mod tasks;
 mod types;

@@ -1,12 +1,11 @@
 //! References to places: tags, members, elements and bits.
 
 use super::Analysis;
-use super::suggest::nearest;
 use super::symbols::Base;
 use crate::hir::{Elementary, Place, Step, StructId, Type};
 use iecc_ast::Name;
 use iecc_ast::rung::{Expr, ExprKind, IntLiteral, Member, Radix, Reference, UnaryOp};
-use iecc_diag::{Code, Diagnostic};
+use iecc_diag::{Code, Diagnostic, closest};
 use iecc_source::{Span, Spanned};
 
 impl Analysis<'_> {
@@ -82,7 +81,7 @@ impl Analysis<'_> {
                     name.span,
                     format!("{what} has no member `{}`", name.node),
                 );
-                match nearest(&name.node, names.iter().copied()) {
+                match closest(&name.node, names.iter().copied()) {
                     Some(near) => {
                         diagnostic.fix(format!("did you mean `{near}`?"), name.span, near)
                     }

@@ -6,13 +6,12 @@
 
 use super::Analysis;
 use super::reference::parse_alias_target;
-use super::suggest::nearest;
 use super::types::{duplicate, fold};
 use crate::hir::{self, Place, TagId};
 use iecc_ast::Name;
 use iecc_ast::logix::{ModuleTag, Tag, TagKind, Usage};
 use iecc_ast::rung::Reference;
-use iecc_diag::{Code, Diagnostic};
+use iecc_diag::{Code, Diagnostic, closest};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Upper bound of all state together; far above any controller's memory.
@@ -295,7 +294,7 @@ impl<'p> Analysis<'p> {
             None => format!("there is no tag `{}` in the controller", name.node),
         };
         let mut diagnostic = Diagnostic::new(Code::E1001, name.span, message).label("not declared");
-        if let Some(near) = nearest(&name.node, self.symbols.visible(program)) {
+        if let Some(near) = closest(&name.node, self.symbols.visible(program)) {
             diagnostic = diagnostic.fix(format!("did you mean `{near}`?"), name.span, near);
         } else if name.node.contains(':') {
             diagnostic = diagnostic.note("no module of the file brings a tag with this name");
