@@ -1,5 +1,5 @@
 //! A trace as a value change dump (IEEE 1364-2005, 18.2), for waveform viewers. Dotted names become
-//! nested scopes.
+//! nested scopes, numbers of bits and elements stand in parentheses.
 
 use super::Trace;
 use crate::run::Column;
@@ -27,14 +27,10 @@ struct Scope {
 
 impl Scope {
     fn add(&mut self, name: &str, column: usize) {
+        let mut parts = parts(name);
+        let variable = parts.pop().unwrap_or_default();
         let mut scope = self;
-        let mut parts = name.split('.').peekable();
-        while let Some(part) = parts.next() {
-            let part = identifier(part);
-            if parts.peek().is_none() {
-                scope.variables.push((part, column));
-                return;
-            }
+        for part in parts {
             let known = scope.scopes.iter().position(|(name, _)| *name == part);
             let index = known.unwrap_or_else(|| {
                 scope.scopes.push((part, Scope::default()));
@@ -42,7 +38,21 @@ impl Scope {
             });
             scope = &mut scope.scopes[index].1;
         }
+        scope.variables.push((variable, column));
     }
+}
+
+/// The identifiers of a dotted name. The number of a bit is no identifier: it joins the part before.
+fn parts(name: &str) -> Vec<String> {
+    let mut parts: Vec<String> = Vec::new();
+    for part in name.split('.') {
+        let is_bit = !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+        match parts.last_mut().filter(|_| is_bit) {
+            Some(word) => word.push_str(&format!("({part})")),
+            None => parts.push(identifier(part)),
+        }
+    }
+    parts
 }
 
 /// Identifiers end at blanks; brackets would be read as a range of bits.
@@ -170,5 +180,21 @@ impl<W: Write> Trace for VcdTrace<W> {
         self.before.clear();
         self.before.extend_from_slice(values);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parts;
+
+    #[test]
+    fn names_are_cut_into_identifiers() {
+        assert_eq!(parts("Lamp"), ["Lamp"]);
+        assert_eq!(parts("t.ACC"), ["t", "ACC"]);
+        assert_eq!(parts("Local:2:I.Data.8"), ["Local:2:I", "Data(8)"]);
+        assert_eq!(parts("grid[1][2].0"), ["grid(1)(2)(0)"]);
+        assert_eq!(parts("two words.$x"), ["two_words", "_x"]);
+        assert_eq!(parts(""), ["_"]);
+        assert_eq!(parts("8"), ["8"]);
     }
 }
