@@ -8,6 +8,7 @@ pub mod filetest;
 pub mod ladder;
 pub mod leaves;
 pub mod mutate;
+pub mod one_block;
 pub mod random_ir;
 pub mod rng;
 pub mod rung_text;

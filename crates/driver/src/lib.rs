@@ -10,6 +10,7 @@ mod output;
 mod pipeline;
 mod refusal;
 pub mod run;
+pub mod sim;
 
 pub use engine::EngineKind;
 pub use explain::{explain_instruction, list_instructions};
