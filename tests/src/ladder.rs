@@ -1,7 +1,8 @@
 //! Small ladder programs and what they do, scan by scan, in a few lines of text.
 //!
 //! A [`Source`] writes the export around tags and rungs; [`Bench`] compiles it with the pipeline
-//! that users run and steps it on the reference interpreter. A script has one line per scan:
+//! that users run and steps it on the reference interpreter and, after the passes, as machine code:
+//! both have to do the same. A script has one line per scan:
 //!
 //! ```text
 //! prescan        | t.ACC=0            before the first scan
@@ -16,8 +17,11 @@ use iecc_diag::{Code, Diagnostics, Severity, render_text};
 use iecc_driver::{FrontOptions, compile};
 use iecc_interp::Interpreter;
 use iecc_ir::{
-    Index, Layout, MemType, Module, Place, Projection, Region, Root, StructId, Type, verify,
+    FaultCode, Index, Layout, MemType, Module, Place, Projection, Region, Root, StructId, Type,
+    verify,
 };
+use iecc_jit::Jit;
+use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_source::SourceMap;
 use iecc_target::{Engine, region_bytes};
 use std::fmt::Write;
@@ -278,6 +282,7 @@ pub struct Bench {
     module: Module,
     layout: Layout,
     engine: Interpreter,
+    machine_code: Jit,
     inputs: Vec<u8>,
     outputs: Vec<u8>,
     next_ns: u64,
@@ -306,6 +311,7 @@ impl Bench {
         Self {
             layout: Layout::new(&module.types),
             engine: Interpreter::new(verify(&module).expect("the pipeline verifies")),
+            machine_code: machine_code(module.clone()),
             inputs: region_bytes(&module, Region::Input),
             outputs: region_bytes(&module, Region::Output),
             next_ns: 0,
@@ -370,20 +376,34 @@ impl Bench {
     }
 
     fn scan(&mut self) {
-        let result = self
-            .engine
-            .step(self.next_ns, &self.inputs, &mut self.outputs);
-        result.unwrap_or_else(|fault| panic!("{fault}"));
-        self.next_ns += 10_000_000;
+        let fault = self.step();
+        assert_eq!(fault, None, "at {} ms", self.next_ns / 1_000_000);
     }
 
     /// Tries one scan that is to end in a fault.
     pub fn scan_faults(&mut self) -> bool {
-        let result = self
+        self.step().is_some()
+    }
+
+    /// One scan on both engines, which have to agree.
+    fn step(&mut self) -> Option<FaultCode> {
+        let mut outputs = self.outputs.clone();
+        let second = self
+            .machine_code
+            .step(self.next_ns, &self.inputs, &mut outputs);
+        let first = self
             .engine
             .step(self.next_ns, &self.inputs, &mut self.outputs);
+        let (first, second) = (first.err().map(|f| f.code), second.err().map(|f| f.code));
+        assert_eq!(first, second, "fault of interpreter and machine code");
+        assert_eq!(self.outputs, outputs, "outputs of both");
+        assert_eq!(
+            self.engine.state(),
+            self.machine_code.state(),
+            "state of both"
+        );
         self.next_ns += 10_000_000;
-        result.is_err()
+        first
     }
 
     /// Where a path leads: a public input or output first, else a tag.
@@ -469,7 +489,16 @@ impl Bench {
         let width = ty.bytes() as usize;
         bytes[offset as usize..][..width].copy_from_slice(&bits.to_le_bytes()[..width]);
         self.engine.set_state(&state);
+        self.machine_code.set_state(&state);
     }
+}
+
+/// Machine code as `iecc run` makes it.
+fn machine_code(mut module: Module) -> Jit {
+    let settings = Settings::default();
+    run_pipeline(&mut module, SOFTWARE, &settings, &mut |_, _| ()).expect("the passes exist");
+    let verified = verify(&module).expect("passes keep the rules");
+    Jit::new(verified).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
 fn read(bytes: &[u8], offset: u64, ty: Type) -> u64 {

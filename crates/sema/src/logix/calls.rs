@@ -8,6 +8,7 @@ use super::Analysis;
 use super::operands::{Slot, literal_of};
 use super::operation::Checker;
 use super::tasks::{RoutineIndex, routine_named};
+use super::words::{are, count_of};
 use crate::hir::{Action, Condition, Const, Elementary, Operand, Place, PouId, Type};
 use iecc_ast::logix::RoutineBody;
 use iecc_ast::rung::{self, Instruction};
@@ -39,21 +40,19 @@ impl Analysis<'_> {
         unit: RoutineIndex,
         ret: &Instruction,
     ) -> Vec<(Elementary, bool)> {
+        let slot = |operand| Slot {
+            program: Some(unit.0),
+            instruction: &ret.mnemonic.node,
+            name: "value",
+            operand,
+        };
         // Errors are reported when the RET itself is checked.
-        let before = (self.diagnostics.clone(), self.reported.clone());
-        let values: Vec<Option<Operand>> = ret
-            .operands
-            .iter()
-            .map(|operand| {
-                self.value(Slot {
-                    program: Some(unit.0),
-                    instruction: &ret.mnemonic.node,
-                    name: "value",
-                    operand,
-                })
-            })
-            .collect();
-        (self.diagnostics, self.reported) = before;
+        let values: Vec<Option<Operand>> = self.silently(|analysis| {
+            let operands = ret.operands.iter();
+            operands
+                .map(|operand| analysis.value(slot(operand)))
+                .collect()
+        });
         values
             .into_iter()
             .map(|value| match value {
@@ -137,9 +136,10 @@ impl Checker<'_> {
         let rest = operands.get(2..).unwrap_or_default();
         if count > rest.len() {
             let message = format!(
-                "{} announces {count} inputs, but {} operands follow",
+                "{} announces {}, but {} given",
                 self.instruction.mnemonic.node,
-                rest.len()
+                count_of(count, "input"),
+                are(rest.len())
             );
             analysis.report(Diagnostic::new(Code::E5020, self.instruction.span, message));
             return None;
@@ -236,9 +236,9 @@ impl Checker<'_> {
             return self.misfit(
                 analysis,
                 format!(
-                    "the routine takes {} values, but {} are passed",
-                    signature.parameters.len(),
-                    inputs.len()
+                    "the routine takes {}, but {} passed",
+                    count_of(signature.parameters.len(), "value"),
+                    are(inputs.len())
                 ),
             );
         }
@@ -246,9 +246,9 @@ impl Checker<'_> {
             return self.misfit(
                 analysis,
                 format!(
-                    "the routine gives back {} values, but {} are expected",
-                    signature.results.len(),
-                    returns.len()
+                    "the routine gives back {}, but {} expected",
+                    count_of(signature.results.len(), "value"),
+                    are(returns.len())
                 ),
             );
         }

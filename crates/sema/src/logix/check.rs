@@ -5,6 +5,7 @@ use super::operation::Checker;
 use super::routines::Signature;
 use super::tasks::{RoutineIndex, Schedule};
 use super::types::fold;
+use super::words::{are, count_of};
 use super::{Analysis, instructions};
 use crate::hir::{self, PouId};
 use iecc_ast::rung::{Element, Instruction};
@@ -61,6 +62,7 @@ impl<'p> Analysis<'p> {
                 Element::Instruction(instruction) => {
                     let first = start && position == 0;
                     let checked = self.instruction(cursor, instruction, first);
+                    self.incomplete |= checked.is_none() && cursor.own_id().is_some();
                     series.extend(checked.map(hir::Element::Instruction));
                 }
                 Element::Branch(branch) => {
@@ -175,13 +177,12 @@ impl<'p> Analysis<'p> {
         let names: Vec<&str> = row.operands.iter().map(|(name, _)| *name).collect();
         let wanted = match names.len() {
             0 => "no operands".to_owned(),
-            1 => format!("1 operand ({})", names[0]),
-            n => format!("{n} operands ({})", names.join(", ")),
+            count => format!("{} ({})", count_of(count, "operand"), names.join(", ")),
         };
         let message = format!(
-            "{} takes {wanted}, but {} are given",
+            "{} takes {wanted}, but {} given",
             instruction.mnemonic.node,
-            instruction.operands.len()
+            are(instruction.operands.len())
         );
         self.report(Diagnostic::new(Code::E5020, instruction.span, message));
     }

@@ -59,11 +59,11 @@ impl Analysis<'_> {
 
     /// Aliases that no rung uses still name places to watch; their mistakes harm nobody.
     fn resolve_idle_aliases(&mut self) {
-        let before = (self.diagnostics.clone(), self.reported.clone());
-        for alias in 0..self.symbols.aliases.len() {
-            self.alias_place(alias);
-        }
-        (self.diagnostics, self.reported) = before;
+        self.silently(|analysis| {
+            for alias in 0..analysis.symbols.aliases.len() {
+                analysis.alias_place(alias);
+            }
+        });
     }
 
     /// The points that routines use, by module tag and address.

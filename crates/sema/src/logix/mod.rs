@@ -18,6 +18,7 @@ mod routines;
 mod symbols;
 mod tasks;
 mod types;
+mod words;
 
 use crate::hir;
 use iecc_ast::logix::Project;
@@ -73,13 +74,20 @@ pub fn analyze(
         symbols: Symbols::default(),
         reported: BTreeSet::new(),
         without_data: BTreeSet::new(),
+        silent: false,
+        incomplete: false,
         diagnostics: found,
     };
     analysis.declare();
     let schedule = analysis.schedule();
     let pous = analysis.check_routines(&schedule);
     let program = analysis.finish(&schedule, pous);
+    let incomplete = analysis.incomplete;
     diagnostics.append(analysis.diagnostics);
+    assert!(
+        !incomplete || diagnostics.has_errors(),
+        "what is left out of a program is reported"
+    );
     program
 }
 
@@ -94,19 +102,33 @@ struct Analysis<'p> {
     reported: BTreeSet<String>,
     /// Tags for which the file gives no values.
     without_data: BTreeSet<hir::TagId>,
+    /// Nothing is reported for now.
+    silent: bool,
+    /// Something that runs was left out because of an error.
+    incomplete: bool,
     diagnostics: Diagnostics,
 }
 
 impl Analysis<'_> {
     fn report(&mut self, diagnostic: Diagnostic) {
-        self.diagnostics.push(diagnostic);
+        if !self.silent {
+            self.diagnostics.push(diagnostic);
+        }
     }
 
     /// Reports unless something with the same key was reported before.
     fn report_once(&mut self, key: String, diagnostic: Diagnostic) {
-        if self.reported.insert(key) {
+        if !self.silent && self.reported.insert(key) {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// Looks something up whose mistakes are reported elsewhere, or harm nobody.
+    fn silently<T>(&mut self, look_up: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.silent, true);
+        let found = look_up(self);
+        self.silent = before;
+        found
     }
 
     /// The tag part of a message: a place as users write it.

@@ -148,13 +148,16 @@ impl<'p> Analysis<'p> {
             .also(routine.name.span, "the routine"),
             Ok(()) => return,
         };
-        self.report_once(format!("kind {:?}", routine.span), diagnostic);
+        self.report_once(kind_key(routine), diagnostic);
     }
 
     /// Checks a routine that never runs.
     fn idle_routine(&mut self, unit: RoutineIndex, schedule: &Schedule, signatures: &[Signature]) {
         let routine = self.routine(unit);
         if language(routine).is_err() {
+            if self.reported.contains(&kind_key(routine)) {
+                return;
+            }
             let message = format!(
                 "the routine `{}` {}; nothing that runs calls it",
                 routine.name.node,
@@ -295,6 +298,11 @@ fn refusal(routine: &Routine) -> &'static str {
         RoutineBody::Encoded(_) => "is encrypted, so it cannot be compiled",
         RoutineBody::Unknown(_) => "is of a kind that iecc does not know",
     }
+}
+
+/// Under which the kind of a routine is reported once.
+fn kind_key(routine: &Routine) -> String {
+    format!("kind {:?}", routine.span)
 }
 
 /// What cannot be compiled does no harm where it never runs; mistakes stay errors.

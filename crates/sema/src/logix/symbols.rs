@@ -338,7 +338,7 @@ impl<'p> Analysis<'p> {
             }
             self.symbols.aliases[at].state = AliasState::Open;
             let Some(target) = self.alias_target(at) else {
-                self.symbols.aliases[at].state = AliasState::Done(None);
+                self.symbols.aliases[at].state = self.alias_state(None);
                 break None;
             };
             let base = self.base(self.symbols.aliases[at].program, &target);
@@ -351,9 +351,18 @@ impl<'p> Analysis<'p> {
         };
         while let Some((alias, target)) = chain.pop() {
             place = place.and_then(|place| self.members(place, &target));
-            self.symbols.aliases[alias].state = AliasState::Done(place.clone());
+            self.symbols.aliases[alias].state = self.alias_state(place.clone());
         }
         place
+    }
+
+    /// What was not reported is not done.
+    fn alias_state(&self, place: Option<Place>) -> AliasState {
+        if self.silent && place.is_none() {
+            AliasState::New
+        } else {
+            AliasState::Done(place)
+        }
     }
 
     fn alias_target(&mut self, alias: usize) -> Option<Reference> {

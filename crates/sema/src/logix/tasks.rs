@@ -124,17 +124,13 @@ impl<'p> Analysis<'p> {
 
     fn task_programs(&mut self, task: &Task) -> Vec<RoutineIndex> {
         let programs = &self.project.programs;
-        let mut scheduled = vec![false; programs.len()];
         let mut mains = Vec::new();
         for name in &task.programs {
             let found = programs
                 .iter()
                 .position(|program| program.name.node.eq_ignore_ascii_case(&name.node));
             match found {
-                Some(index) => {
-                    scheduled[index] = true;
-                    mains.extend(self.main_routine(index));
-                }
+                Some(index) => mains.extend(self.main_routine(index)),
                 None => {
                     let message = format!(
                         "the task `{}` runs the program `{}`, which is not in the file",
@@ -144,14 +140,28 @@ impl<'p> Analysis<'p> {
                 }
             }
         }
-        for (program, _) in programs.iter().zip(scheduled).filter(|(_, run)| !run) {
+        self.warn_idle_programs();
+        mains
+    }
+
+    fn warn_idle_programs(&mut self) {
+        let project = self.project;
+        for program in &project.programs {
+            let schedules = |task: &&Task| {
+                let mut names = task.programs.iter();
+                names.any(|name| name.node.eq_ignore_ascii_case(&program.name.node))
+            };
+            let why = match project.tasks.iter().find(schedules) {
+                Some(task) if task.inhibited => "in an inhibited task",
+                Some(_) => continue,
+                None => "not scheduled",
+            };
             let message = format!(
-                "the program `{}` is not scheduled: it is checked but never runs",
+                "the program `{}` is {why}: it is checked but never runs",
                 program.name.node
             );
             self.report(Diagnostic::new(Code::E6023, program.name.span, message));
         }
-        mains
     }
 
     fn main_routine(&mut self, index: usize) -> Option<RoutineIndex> {
