@@ -1,5 +1,4 @@
 //! The sets agree: every code has a page, and an example that gives it, alone of its kind.
-#![expect(clippy::disallowed_methods, reason = "tests read files")]
 
 use iecc_diag::{Code, Diagnostics, Severity};
 use iecc_driver::{FrontOptions, compile, load};

@@ -83,6 +83,7 @@ codes! {
     E2003 Error "bit does not exist";
     E2004 Error "wrong number of indexes";
     E2005 Error "number does not fit its type";
+    E2006 Error "constant is written";
     E2007 Error "tags are too large";
     E2008 Error "initial value does not fit its type";
     E2009 Error "type contains itself";
@@ -137,6 +138,7 @@ codes! {
     E6028 Warning "program has no main routine";
     E6029 Error "parameter connection is not compiled";
     E6030 Error "timer of the time base does not exist";
+    E6031 Warning "module is inhibited";
     // 7 target cannot express this
     E7001 Error "target cannot express a loop";
     E7002 Error "target cannot express a division";

@@ -74,6 +74,7 @@ pub fn analyze(
         symbols: Symbols::default(),
         reported: BTreeSet::new(),
         without_data: BTreeSet::new(),
+        constants: BTreeSet::new(),
         silent: false,
         incomplete: false,
         diagnostics: found,
@@ -102,6 +103,8 @@ struct Analysis<'p> {
     reported: BTreeSet<String>,
     /// Tags for which the file gives no values.
     without_data: BTreeSet<hir::TagId>,
+    /// Tags that logic may not write.
+    constants: BTreeSet<hir::TagId>,
     /// Nothing is reported for now.
     silent: bool,
     /// Something that runs was left out because of an error.

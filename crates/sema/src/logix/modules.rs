@@ -14,6 +14,16 @@ impl<'p> Analysis<'p> {
     pub(crate) fn module_tag(&mut self, key: &str, used: &Name) -> Option<TagId> {
         let symbol = &self.symbols.modules[key];
         let tag = symbol.tag;
+        if let Some(module) = symbol.inhibited {
+            let message = format!(
+                "the module `{}` is inhibited; it is compiled as if it were not",
+                module.node
+            );
+            let diagnostic =
+                Diagnostic::new(Code::E6031, module.span, message).also(used.span, "used here");
+            self.report_once(format!("inhibited {key}"), diagnostic);
+        }
+        let symbol = &self.symbols.modules[key];
         let storage = match symbol.storage.clone() {
             Some(storage) => storage,
             None => {
@@ -121,8 +131,19 @@ impl<'p> Analysis<'p> {
             .map(|symbol| symbol.tag)
     }
 
-    /// Refuses a write to a module's configuration, which would have to reach the module.
+    /// Refuses a write to a constant, and to a module's configuration, which would have to reach the
+    /// module.
     pub(crate) fn check_write(&mut self, place: &hir::Place, span: iecc_source::Span) {
+        if self.constants.contains(&place.tag) {
+            let name = self.display(place);
+            let message = format!("`{name}` is a constant and cannot be changed by the program");
+            let mut diagnostic = Diagnostic::new(Code::E2006, span, message);
+            if let Some(declared) = self.tags[place.tag.index()].span {
+                diagnostic = diagnostic.also(declared, "declared as a constant here");
+            }
+            self.report(diagnostic);
+            return;
+        }
         let Some(module) = self.module_of(place.tag) else {
             return;
         };

@@ -49,6 +49,8 @@ enum AliasState {
 #[derive(Debug)]
 pub(crate) struct ModuleSymbol<'p> {
     pub(crate) tag: &'p ModuleTag,
+    /// The module's name, if it is inhibited.
+    pub(crate) inhibited: Option<&'p Name>,
     /// Its storage, made on first use.
     pub(crate) storage: Option<Result<TagId, String>>,
 }
@@ -125,12 +127,16 @@ impl<'p> Analysis<'p> {
 
     fn declare_modules(&mut self) {
         let project = self.project;
-        for tag in project.modules.iter().flat_map(|module| &module.tags) {
-            let symbol = ModuleSymbol { tag, storage: None };
-            self.symbols
-                .modules
-                .entry(fold(&tag.name.node))
-                .or_insert(symbol);
+        for module in &project.modules {
+            for tag in &module.tags {
+                let symbol = ModuleSymbol {
+                    tag,
+                    inhibited: module.inhibited.then_some(&module.name),
+                    storage: None,
+                };
+                let symbols = &mut self.symbols.modules;
+                symbols.entry(fold(&tag.name.node)).or_insert(symbol);
+            }
         }
     }
 
@@ -197,6 +203,9 @@ impl<'p> Analysis<'p> {
         let initial = self.initial_values(ty, &tag.initial, tag.constant);
         if tag.initial.decorated.is_none() && tag.initial.l5k.is_none() {
             self.without_data.insert(TagId::from_index(self.tags.len()));
+        }
+        if tag.constant {
+            self.constants.insert(TagId::from_index(self.tags.len()));
         }
         self.push_tag(hir::Tag {
             name,
