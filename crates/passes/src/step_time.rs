@@ -13,7 +13,7 @@ use iecc_ir::{
     BinaryOp, Block, CompareOp, ConvertOp, Function, Inst, InstData, Layout, Module, Place, Root,
     Type, Value,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Runs the pass.
 pub(crate) fn run(module: &mut Module) {
@@ -23,9 +23,7 @@ pub(crate) fn run(module: &mut Module) {
     let clocks = clocks(module);
     let scan = module.scan;
     let func = &mut module.funcs[scan];
-    for (place, unit_ns) in &clocks {
-        replace_elapsed(func, place, *unit_ns);
-    }
+    replace_elapsed(func, &clocks);
     let entry = func.entry();
     let mut prologue = Vec::new();
     for (place, unit_ns) in &clocks {
@@ -37,11 +35,11 @@ pub(crate) fn run(module: &mut Module) {
 }
 
 /// The places that `elapsed` alone uses, and their units.
-fn clocks(module: &Module) -> Vec<(Place, u64)> {
+fn clocks(module: &Module) -> BTreeMap<Place, u64> {
     let func = &module.funcs[module.scan];
     let layout = Layout::new(&module.types);
     let mut clocks: BTreeMap<&Place, Option<u64>> = BTreeMap::new();
-    let mut others = Vec::new();
+    let mut others = Others::default();
     for &inst in func
         .layout
         .iter()
@@ -56,7 +54,7 @@ fn clocks(module: &Module) -> Vec<(Place, u64)> {
                     *unit = None;
                 }
             }
-            data => others.extend(data.place()),
+            data => data.place().into_iter().for_each(|place| others.add(place)),
         }
     }
     let starts_at_zero = |place: &Place| {
@@ -68,11 +66,37 @@ fn clocks(module: &Module) -> Vec<(Place, u64)> {
     };
     clocks
         .into_iter()
-        .filter(|(place, _)| {
-            starts_at_zero(place) && !others.iter().any(|other| other.may_overlap(place))
-        })
+        .filter(|(place, _)| starts_at_zero(place) && !others.may_overlap(place))
         .filter_map(|(place, unit)| Some((place.clone(), unit?)))
         .collect()
+}
+
+/// Places that are used otherwise, asked for by thousands of clocks.
+#[derive(Default)]
+struct Others<'f> {
+    fixed: BTreeSet<&'f Place>,
+    /// With index values; all values are made one, as they may be anything.
+    dynamic: BTreeSet<Place>,
+}
+
+impl<'f> Others<'f> {
+    fn add(&mut self, place: &'f Place) {
+        if place.is_static() {
+            self.fixed.insert(place);
+            return;
+        }
+        let mut blurred = place.clone();
+        let any = Value::from_u32(0);
+        blurred.values_mut().for_each(|value| *value = any);
+        self.dynamic.insert(blurred);
+    }
+
+    /// Whether one of them is this scalar, a bit of it, or may be.
+    fn may_overlap(&self, scalar: &Place) -> bool {
+        let next = self.fixed.range::<&Place, _>(&scalar..).next();
+        next.is_some_and(|other| other.may_overlap(scalar))
+            || self.dynamic.iter().any(|other| other.may_overlap(scalar))
+    }
 }
 
 /// `P := min(P + step, 2^63 - 1)`, at the start of the scan. Both are at most 2^63 - 1, so a sum
@@ -129,17 +153,13 @@ fn accumulate(func: &mut Function, place: &Place, unit_ns: u64, out: &mut Vec<In
     );
 }
 
-fn replace_elapsed(func: &mut Function, place: &Place, unit: u64) {
+fn replace_elapsed(func: &mut Function, clocks: &BTreeMap<Place, u64>) {
     for block in func.layout.clone() {
         let insts = std::mem::take(&mut func.block_mut(block).insts);
         for inst in insts {
             match func.inst(inst).clone() {
-                InstData::Elapsed {
-                    place: found,
-                    unit_ns,
-                    ty,
-                } if found == *place && unit_ns == unit => {
-                    take_pending(func, block, inst, place, ty);
+                InstData::Elapsed { place, ty, .. } if clocks.contains_key(&place) => {
+                    take_pending(func, block, inst, &place, ty);
                 }
                 _ => func.block_mut(block).insts.push(inst),
             }

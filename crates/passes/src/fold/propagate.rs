@@ -40,7 +40,11 @@ impl Fact {
 #[derive(Debug, Clone, Copy)]
 enum User {
     Inst(Inst),
-    Terminator(Block),
+    /// Its branch decides by the value.
+    Branch(Block),
+    /// The block's jump to its n-th target passes the value for the m-th parameter. Looked at one
+    /// by one: a jump may pass thousands.
+    Argument(Block, u32, u32),
 }
 
 /// Replaces values that are always the same by constants and drops jumps that never happen. Says
@@ -80,9 +84,7 @@ impl<'f> Solver<'f> {
                     .flatten()
                     .for_each(|v| users[v].push(User::Inst(inst)));
             }
-            for value in func.terminator(block).values() {
-                users[value].push(User::Terminator(block));
-            }
+            add_terminator(&mut users, func, block);
         }
         Self {
             func,
@@ -123,8 +125,15 @@ impl<'f> Solver<'f> {
         for index in 0..self.users[value].len() {
             match self.users[value][index] {
                 User::Inst(inst) if self.reached.contains(self.block_of[inst]) => self.inst(inst),
-                User::Terminator(block) if self.reached.contains(block) => self.terminator(block),
-                User::Inst(_) | User::Terminator(_) => {}
+                User::Branch(block) if self.reached.contains(block) => self.terminator(block),
+                User::Argument(block, target, position)
+                    if self.taken.contains(&(block, target as usize)) =>
+                {
+                    let target = self.func.terminator(block).targets()[target as usize].block;
+                    let param = self.func.block(target).params[position as usize];
+                    self.lower(param, self.facts[value]);
+                }
+                User::Inst(_) | User::Branch(_) | User::Argument(..) => {}
             }
         }
     }
@@ -242,13 +251,27 @@ impl<'f> Solver<'f> {
     }
 
     fn jump(&mut self, block: Block, index: usize, target: &Target) {
-        self.taken.insert((block, index));
+        if !self.taken.insert((block, index)) {
+            return;
+        }
         let func = self.func;
         for (&param, &arg) in func.block(target.block).params.iter().zip(&target.args) {
             self.lower(param, self.facts[arg]);
         }
         if self.reached.insert(target.block) {
             self.blocks.push(target.block);
+        }
+    }
+}
+
+fn add_terminator(users: &mut SecondaryMap<Value, Vec<User>>, func: &Function, block: Block) {
+    let terminator = func.terminator(block);
+    if let Terminator::Brif { cond: value, .. } | Terminator::Switch { value, .. } = terminator {
+        users[*value].push(User::Branch(block));
+    }
+    for (index, target) in (0..).zip(terminator.targets()) {
+        for (position, &arg) in (0..).zip(&target.args) {
+            users[arg].push(User::Argument(block, index, position));
         }
     }
 }

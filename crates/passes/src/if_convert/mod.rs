@@ -27,6 +27,9 @@ use iecc_ir::{
 use region::{Regions, Walk};
 use std::collections::BTreeMap;
 
+/// A walk with more steps is worth the question whether a block ran.
+const MANY_STEPS: usize = 6;
+
 /// Converts every function that can be converted.
 pub(crate) fn if_convert(module: &mut Module) {
     for func in module.funcs.values_mut() {
@@ -202,14 +205,26 @@ impl<'f> Conversion<'f> {
         let cond = match conditions.get(&is_second) {
             Some(&cond) => cond,
             None => {
-                let bits = is_second.iter().map(|&bit| u64::from(bit));
-                let ways: Vec<Value> = bits.map(|b| self.editor.constant(Type::I1, b)).collect();
-                let cond = self.value_of_walk(walk, &ways, None);
+                let cond = self.condition(walk, &is_second);
                 conditions.insert(is_second, cond);
                 cond
             }
         };
         self.choose(cond, second, first)
+    }
+
+    /// Whether one of these ways is taken. After many branches it may be enough to ask whether some
+    /// block ran, which is found once for all who ask and step by step: a chain of early returns
+    /// would otherwise be written out anew for each variable.
+    fn condition(&mut self, walk: &Walk, ways: &[bool]) -> Value {
+        let split = (walk.steps().len() > MANY_STEPS).then(|| self.regions.split(walk, ways));
+        if let Some((block, side)) = split.flatten() {
+            let runs = self.runs(block);
+            return if side { runs } else { self.editor.not(runs) };
+        }
+        let bits = ways.iter().map(|&bit| u64::from(bit));
+        let ways: Vec<Value> = bits.map(|b| self.editor.constant(Type::I1, b)).collect();
+        self.value_of_walk(walk, &ways, None)
     }
 
     /// The value of the way into the goal that is taken from the start of the walk; `missed` if

@@ -105,6 +105,27 @@ impl Regions {
         }
     }
 
+    /// A block that tells the ways apart: if it ran, the way taken is one of those with the given
+    /// mark, else one of the others. All with the mark come through it, and the others come from
+    /// blocks before it, which it cannot reach. Tries the closest candidates.
+    pub(super) fn split(&self, walk: &Walk, marks: &[bool]) -> Option<(Block, bool)> {
+        let from = |mark: bool| {
+            let ways = walk.ways.iter().zip(marks);
+            ways.filter(move |(_, m)| **m == mark)
+                .map(|((block, _), _)| *block)
+        };
+        [true, false].into_iter().find_map(|mark| {
+            let first = from(mark).min_by_key(|&block| self.position[block])?;
+            let candidates = [Some(first), self.dominators.immediate(first)];
+            let splits = |block: &Block| {
+                from(mark).all(|way| self.dominators.dominates(*block, way))
+                    && from(!mark).all(|way| self.position[way] < self.position[*block])
+            };
+            let found = candidates.into_iter().flatten().find(splits);
+            found.map(|block| (block, mark))
+        })
+    }
+
     /// Where the targets of a block lead, with positions for steps. A block whose ways all meet
     /// again before the goal leads to where they meet.
     fn exits(

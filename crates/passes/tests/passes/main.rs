@@ -6,3 +6,4 @@ mod dce;
 mod fold;
 mod inline;
 mod random;
+mod size;
