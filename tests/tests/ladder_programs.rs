@@ -217,6 +217,33 @@ fn values_without_names_are_read_for_plain_tags_and_timers() {
         .run("prescan | n=12 a[0]=3 a[1]=-4 c.PRE=9 c.ACC=9 c.DN=1 c.CU=0 c.OV=0");
 }
 
+#[test]
+fn values_without_names_are_read_in_the_order_of_storage() {
+    // The hidden SINT first: bit 0 is Open, bit 1 Fault.
+    let source = Source::rungs(&["NOP();"]).types(VALVE).tag_xml(
+        "<Tag Name=\"v\" TagType=\"Base\" DataType=\"Valve\"><Data Format=\"L5K\">\
+         <![CDATA[[2,[-536870912,500,20],[7,8,9]]]]></Data></Tag>\
+         <Tag Name=\"s\" TagType=\"Base\" DataType=\"STRING\"><Data Format=\"L5K\">\
+         <![CDATA[[2,'Hi$00$00']]]></Data></Tag>",
+    );
+    Bench::with(&source, &export()).run(
+        "prescan | v.Open=0 v.Fault=1 v.Delay.EN=1 v.Delay.TT=1 v.Delay.DN=1 v.Delay.PRE=500
+         prescan | v.Delay.ACC=20 v.Steps[0]=7 v.Steps[2]=9 s.LEN=2 s.DATA[0]=72 s.DATA[1]=105",
+    );
+    Bench::new(&source).run("prescan | v.Fault=0 v.Delay.PRE=500 v.Delay.ACC=0 s.LEN=0");
+}
+
+#[test]
+fn a_value_that_cannot_be_read_is_an_error_where_the_tag_is_used() {
+    let tag = "<Tag Name=\"n\" TagType=\"Base\" DataType=\"SINT\"><Data Format=\"Decorated\">\
+        <DataValue DataType=\"SINT\" Value=\"300\"/></Data></Tag>";
+    let unused = Source::rungs(&["NOP();"]).tag_xml(tag);
+    assert_eq!(compile_xml(&unused.xml(), &export()).1, []);
+    let used = Source::rungs(&["CLR(n)CLR(n);"]).tag_xml(tag);
+    assert_eq!(compile_xml(&used.xml(), &export()).1, [Code::E2008]);
+    assert_eq!(compile_xml(&used.xml(), &FrontOptions::default()).1, []);
+}
+
 fn edited() -> Source {
     Source::new()
         .tags("n DINT")

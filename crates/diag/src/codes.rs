@@ -110,7 +110,6 @@ codes! {
     E5031 Error "SBR is not the first instruction";
     E5032 Warning "routine has pending edits";
     E5033 Error "form of operand is not compiled";
-    E5034 Error "tag values are given without names";
     // 6 configuration, tasks and addresses
     E6001 Error "duration is malformed";
     E6002 Error "period or length of the run is out of range";

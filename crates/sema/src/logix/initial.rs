@@ -2,15 +2,16 @@
 //!
 //! The decorated form is read, because it has names; where a file holds only the form of bracketed
 //! lists, that is. With a cold start only presets, lengths and constants are kept. A value that
-//! does not fit its type is an error at its place.
+//! does not fit its type is an error at its place, reported when the tag is used.
 
+use super::types::Slot;
 use super::{Analysis, Init};
-use crate::hir::{Elementary, MemberDef, Step, StructKind, Type};
+use crate::hir::{Elementary, MemberDef, Step, StructId, StructKind, Type};
 use iecc_ast::{
     Initial, L5kValue, Name, Number, StringData, StringLiteral, Value, ValueKind, parse_number,
 };
 use iecc_diag::{Code, Diagnostic};
-use iecc_source::Span;
+use iecc_source::{Span, Spanned};
 
 type Leaves = Vec<(Vec<Step>, u64)>;
 
@@ -25,10 +26,12 @@ impl Analysis<'_> {
         let keep = constant || reader.analysis.options.init == Init::Export;
         if let Some(value) = &initial.decorated {
             reader.value(ty, value, keep);
-        } else if let Some(value) = &initial.l5k {
-            reader.list(ty, value, keep);
         } else if let Some(text) = &initial.string {
             reader.string(ty, text, keep);
+        } else if let Some(value) = &initial.l5k {
+            reader.list(ty, value, keep);
+        } else if let Some(image) = &initial.hex {
+            reader.image(ty, image, keep);
         }
         reader.leaves
     }
@@ -102,6 +105,10 @@ impl Reader<'_, '_> {
     }
 
     fn scalar(&mut self, ty: Elementary, text: &Name, keep: bool) {
+        // What is not kept need not be understood: dates, for one, are no numbers.
+        if !keep {
+            return;
+        }
         match parse_number(&text.node).and_then(|number| bits_of(ty, &number)) {
             Some(bits) => self.leaf(bits, keep),
             None => {
@@ -145,6 +152,19 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Raw memory says nothing without the vendor's layout, unless it is all 0. Structures may hold
+    /// presets, which a cold start keeps.
+    fn image(&mut self, ty: Type, image: &Spanned<Vec<u8>>, keep: bool) {
+        let may_matter = keep || !matches!(ty, Type::Elementary(_));
+        if may_matter && image.node.iter().any(|byte| *byte != 0) {
+            let message = "the value is given as a memory image only, which is not read";
+            self.analysis.report(
+                Diagnostic::new(Code::E2008, image.span, message)
+                    .note("export the project with the option for decorated data"),
+            );
+        }
+    }
+
     /// The `LEN` and `DATA` of a string tag.
     fn string(&mut self, ty: Type, text: &StringData, keep: bool) {
         let Type::Struct(id) = ty else {
@@ -180,9 +200,7 @@ impl Reader<'_, '_> {
                 }
             }
             (Type::Struct(id), L5kValue::List(values, span)) => {
-                let def = self.analysis.types.table.struct_def(id);
-                let (kind, members) = (def.kind, def.members.clone());
-                self.structure(ty, kind, &members, values, *span, keep);
+                self.structure(id, values, *span, keep);
             }
             (Type::Elementary(_) | Type::Struct(_), _) => {
                 let span = match value {
@@ -194,50 +212,67 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// `[flags, PRE, ACC]` for the predefined structures. Others need the hidden members that the
-    /// decorated form gives names to.
-    fn structure(
-        &mut self,
-        ty: Type,
-        kind: StructKind,
-        members: &[MemberDef],
-        values: &[L5kValue],
-        span: Span,
-        keep: bool,
-    ) {
-        let first_flag = match kind {
-            StructKind::Timer | StructKind::Counter | StructKind::Control => 31,
-            StructKind::Plain => {
-                let message = format!(
-                    "the values of type {} are given without names only, which is not read yet",
-                    self.analysis.types.table.name(ty)
-                );
-                self.analysis.report(
-                    Diagnostic::new(Code::E5034, span, message)
-                        .note("export the project with the option for decorated data"),
-                );
-                return;
+    fn structure(&mut self, id: StructId, values: &[L5kValue], span: Span, keep: bool) {
+        let types = &self.analysis.types;
+        let def = types.table.struct_def(id);
+        let (kind, members) = (def.kind, def.members.clone());
+        let slots = match (kind, types.storage(id)) {
+            (StructKind::Plain, Some(slots)) => slots.to_vec(),
+            // The only predefined one, STRING, holds its members in order.
+            (StructKind::Plain, None) => (0..members.len() as u32).map(Slot::Member).collect(),
+            (StructKind::Timer | StructKind::Counter | StructKind::Control, _) => {
+                flags_then_numbers(&members)
             }
         };
-        let [L5kValue::Scalar(flags), numbers @ ..] = values else {
-            return self.misfit(ty, span);
-        };
-        let Some(word) = parse_number(&flags.node).and_then(|n| bits_of(Elementary::Dint, &n))
-        else {
-            return self.misfit(ty, flags.span);
-        };
-        let (mut bit, mut numbers) = (first_flag + 1, numbers.iter());
-        for (index, member) in members.iter().enumerate().filter(|(_, m)| !m.hidden) {
-            self.path.push(Step::Field(index as u32));
-            if member.ty == Type::Elementary(Elementary::Bool) {
-                bit -= 1;
-                self.leaf(word >> bit & 1, keep);
-            } else if let Some(value) = numbers.next() {
-                self.list(member.ty, value, keep || kept_when_cold(kind, &member.name));
+        if slots.len() != values.len() {
+            return self.misfit(Type::Struct(id), span);
+        }
+        for (slot, value) in slots.iter().zip(values) {
+            match slot {
+                Slot::Member(index) => {
+                    let member = &members[*index as usize];
+                    let keep = keep || kept_when_cold(kind, &member.name);
+                    self.path.push(Step::Field(*index));
+                    self.list(member.ty, value, keep);
+                    self.path.pop();
+                }
+                Slot::Bits(bits) => self.flags(bits, value, keep),
+                Slot::Skipped => {}
             }
+        }
+    }
+
+    fn flags(&mut self, bits: &[(u32, u32)], value: &L5kValue, keep: bool) {
+        let (text, span) = match value {
+            L5kValue::Scalar(text) => (text.node.as_str(), text.span),
+            L5kValue::List(_, span) => ("", *span),
+        };
+        // Hidden integers are SINT or DINT; their bits fit both.
+        let word = parse_number(text).and_then(|number| match number {
+            Number::Int { value, .. } => Some(value as u64),
+            Number::Real { .. } => None,
+        });
+        let Some(word) = word else {
+            return self.misfit(Type::Elementary(Elementary::Dint), span);
+        };
+        for &(bit, index) in bits {
+            self.path.push(Step::Field(index));
+            self.leaf(word >> bit & 1, keep);
             self.path.pop();
         }
     }
+}
+
+/// `[flags, PRE, ACC]`: flags from bit 31 downwards, then the numbers.
+fn flags_then_numbers(members: &[MemberDef]) -> Vec<Slot> {
+    let is_flag = |member: &MemberDef| member.ty == Type::Elementary(Elementary::Bool);
+    let shown = || (0..).zip(members).filter(|(_, member)| !member.hidden);
+    let flags = shown().filter(|(_, member)| is_flag(member));
+    let bits = (0..=31).rev().zip(flags.map(|(index, _)| index)).collect();
+    let numbers = shown().filter(|(_, member)| !is_flag(member));
+    std::iter::once(Slot::Bits(bits))
+        .chain(numbers.map(|(index, _)| Slot::Member(index)))
+        .collect()
 }
 
 /// Presets and lengths are part of the program rather than of its state.

@@ -23,7 +23,7 @@ mod words;
 use crate::hir;
 use iecc_ast::logix::Project;
 use iecc_diag::{Diagnostic, Diagnostics};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use symbols::Symbols;
 use types::NamedTypes;
 
@@ -74,6 +74,7 @@ pub fn analyze(
         symbols: Symbols::default(),
         reported: BTreeSet::new(),
         without_data: BTreeSet::new(),
+        unread_values: BTreeMap::new(),
         constants: BTreeSet::new(),
         silent: false,
         incomplete: false,
@@ -103,6 +104,8 @@ struct Analysis<'p> {
     reported: BTreeSet<String>,
     /// Tags for which the file gives no values.
     without_data: BTreeSet<hir::TagId>,
+    /// What is wrong with values of tags that nothing has used so far.
+    unread_values: BTreeMap<hir::TagId, Diagnostics>,
     /// Tags that logic may not write.
     constants: BTreeSet<hir::TagId>,
     /// Nothing is reported for now.

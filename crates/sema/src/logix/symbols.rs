@@ -200,7 +200,13 @@ impl<'p> Analysis<'p> {
     }
 
     fn add_tag(&mut self, tag: &Tag, ty: hir::Type, name: String) -> TagId {
+        let before = std::mem::take(&mut self.diagnostics);
         let initial = self.initial_values(ty, &tag.initial, tag.constant);
+        let found = std::mem::replace(&mut self.diagnostics, before);
+        if !found.is_empty() {
+            self.unread_values
+                .insert(TagId::from_index(self.tags.len()), found);
+        }
         if tag.initial.decorated.is_none() && tag.initial.l5k.is_none() {
             self.without_data.insert(TagId::from_index(self.tags.len()));
         }
@@ -277,7 +283,14 @@ impl<'p> Analysis<'p> {
 
     fn use_symbol(&mut self, symbol: &Symbol<'p>, used: &Name) -> Option<Base> {
         match symbol {
-            Symbol::Tag(id, _) => Some(Base::Tag(*id)),
+            Symbol::Tag(id, _) => {
+                if !self.silent
+                    && let Some(found) = self.unread_values.remove(id)
+                {
+                    self.diagnostics.append(found);
+                }
+                Some(Base::Tag(*id))
+            }
             Symbol::Alias(index) => Some(Base::Alias(*index)),
             Symbol::Unusable(reason, declared) => {
                 let message = format!("`{}` {reason}", used.node);

@@ -24,7 +24,19 @@ pub(crate) type Usable = Result<Type, String>;
 pub(crate) struct NamedTypes {
     pub(crate) table: Types,
     named: BTreeMap<String, Usable>,
+    storage: BTreeMap<StructId, Vec<Slot>>,
     measures: BTreeMap<Type, Measure>,
+}
+
+/// One value of a structure in the order of storage, as bracketed data lists them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Slot {
+    /// The value of a member, by position.
+    Member(u32),
+    /// An integer whose bits are members: bit and position of each.
+    Bits(Vec<(u32, u32)>),
+    /// Of a member that is not stored.
+    Skipped,
 }
 
 /// Bounds of a type.
@@ -165,6 +177,11 @@ impl NamedTypes {
         }
     }
 
+    /// How the bracketed data of a structure of the file is laid out.
+    pub(crate) fn storage(&self, id: StructId) -> Option<&[Slot]> {
+        self.storage.get(&id).map(Vec::as_slice)
+    }
+
     /// Bytes that a value of the type takes, without padding.
     pub(crate) fn bytes(&self, ty: Type) -> u64 {
         self.measure(ty).bytes
@@ -182,6 +199,9 @@ impl NamedTypes {
         }
         match self.named.get(&fold(name)) {
             Some(ty) => ty.clone(),
+            None if is_vendor_type(name) => {
+                Err(format!("has the type `{name}`, which is not compiled yet"))
+            }
             None => Err(format!(
                 "has the type `{name}`, which iecc does not know and the file does not define"
             )),
@@ -244,6 +264,28 @@ fn check_measure(name: &str, measure: Measure) -> Result<(), String> {
         ));
     }
     Ok(())
+}
+
+/// Types that the vendor's controllers know without a definition.
+fn is_vendor_type(name: &str) -> bool {
+    const STARTS: [&str; 14] = [
+        "ALARM",
+        "AXIS_",
+        "CAM",
+        "COORDINATE_SYSTEM",
+        "DATALOG_",
+        "EXT_ROUTINE_",
+        "FBD_",
+        "HMIBC",
+        "MESSAGE",
+        "MOTION_",
+        "PHASE",
+        "PID",
+        "SERIAL_PORT_CONTROL",
+        "SFC_",
+    ];
+    let name = name.to_ascii_uppercase();
+    STARTS.iter().any(|start| name.starts_with(start))
 }
 
 /// Names are compared ignoring ASCII case everywhere.
@@ -371,7 +413,11 @@ impl Collector<'_, '_> {
                 }),
             }
         }
+        let storage = storage_of(definition, &def);
         let ty = self.types.add_struct(def);
+        if let Ok(Type::Struct(id)) = ty {
+            self.types.storage.insert(id, storage);
+        }
         self.types.named.insert(fold(&definition.name.node), ty);
     }
 
@@ -385,4 +431,29 @@ impl Collector<'_, '_> {
         let dimensions: Vec<u32> = member.dimension.into_iter().collect();
         self.types.resolve(&member.data_type.node, &dimensions)
     }
+}
+
+/// BIT members are bits of a hidden member that stands before them.
+fn storage_of(definition: &DataType, def: &StructDef) -> Vec<Slot> {
+    let mut slots = Vec::new();
+    let mut hosts: BTreeMap<String, usize> = BTreeMap::new();
+    for member in &definition.members {
+        let position = def.member(&member.name.node);
+        match (&member.bit_of, position) {
+            (Some((host, bit)), Some(position)) => {
+                let host = hosts.get(&fold(&host.node)).map(|at| &mut slots[*at]);
+                if let Some(Slot::Bits(bits)) = host {
+                    bits.push((*bit, position));
+                }
+            }
+            (Some(_), None) => {}
+            (None, _) if member.hidden => {
+                hosts.insert(fold(&member.name.node), slots.len());
+                slots.push(Slot::Bits(Vec::new()));
+            }
+            (None, Some(position)) => slots.push(Slot::Member(position)),
+            (None, None) => slots.push(Slot::Skipped),
+        }
+    }
+    slots
 }
