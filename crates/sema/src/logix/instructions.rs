@@ -535,3 +535,49 @@ impl Row {
         self.operands.iter().any(|(_, kind)| *kind == Variable)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn a_mnemonic_names_one_row() {
+        let names: Vec<String> = INSTRUCTIONS
+            .iter()
+            .flat_map(Row::names)
+            .chain(NOT_LOGIX.iter().map(|(name, _)| *name))
+            .map(str::to_ascii_uppercase)
+            .collect();
+        let unique: BTreeSet<&String> = names.iter().collect();
+        assert_eq!(unique.len(), names.len());
+        assert!(names.len() > 170, "{}", names.len());
+    }
+
+    #[test]
+    fn both_names_lead_to_the_row_whatever_the_case() {
+        assert_eq!(find("mov"), find("Move"));
+        assert_eq!(find("isinf").map(|row| row.name), Some("IsINF"));
+        assert_eq!(find("NXT"), None);
+    }
+
+    /// Latches, moves and resets are left alone; an effect names an operand that is there.
+    #[test]
+    fn prescan_effects_are_those_of_the_manual() {
+        let changed: Vec<&str> = INSTRUCTIONS
+            .iter()
+            .filter(|row| !row.prescan.is_empty())
+            .map(|row| row.name)
+            .collect();
+        assert_eq!(
+            changed,
+            [
+                "OTE", "ONS", "OSR", "OSF", "TON", "TOF", "RTO", "CTU", "CTD"
+            ]
+        );
+        for row in INSTRUCTIONS {
+            let operands = row.operands.len();
+            assert!(row.prescan.iter().all(|(index, _)| *index < operands));
+        }
+    }
+}
