@@ -179,12 +179,16 @@ struct Emitter<'a> {
 }
 
 impl Emitter<'_> {
-    /// `rung5` for what comes from a rung.
+    /// `Deposit_r5` for what comes from rung 5 of a routine `Deposit`.
     fn stem(&self, origin: Option<Origin>) -> String {
         let label = origin.map_or("", |origin| &self.module.origins[origin].label);
-        let number = label.rsplit_once("rung ").map(|(_, number)| number);
-        match number.filter(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())) {
-            Some(number) => format!("rung{number}"),
+        let parts = label.rsplit_once(" rung ");
+        let digits = |n: &str| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit());
+        match parts.filter(|(_, number)| digits(number)) {
+            Some((place, number)) => {
+                let routine = place.rsplit('/').next().unwrap_or(place);
+                format!("{}_r{number}", identifier(routine))
+            }
             None => "w".to_owned(),
         }
     }
@@ -437,10 +441,12 @@ impl Emitter<'_> {
     }
 
     fn logic(&mut self, expressions: &Expressions) -> fmt::Result {
+        // Instructions of one rung have origins of their own with one label.
+        let label = |origin: Option<Origin>| origin.map(|o| &self.module.origins[o].label);
         let mut last = None;
         for wire in &expressions.wires {
-            if last != Some(wire.origin) {
-                last = Some(wire.origin);
+            if last != Some(label(wire.origin)) {
+                last = Some(label(wire.origin));
                 self.group(wire.origin)?;
             }
             writeln!(self.out, "    {}", declaration(wire))?;
