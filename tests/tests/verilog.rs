@@ -8,8 +8,10 @@
 use iecc_driver::sim::VerilogSim;
 use iecc_interp::Interpreter;
 use iecc_ir::{Module, Region, parse_module, print_module, verify};
+use iecc_passes::{HARDWARE, Settings, run_pipeline};
 use iecc_target::{Engine, Refusal, Target, region_bytes};
 use iecc_tests::one_block::one_block_module;
+use iecc_tests::random_ir::{self, random_module, seeds};
 use iecc_tests::rng::Rng;
 use iecc_tests::stimulus::random_stimulus;
 use iecc_verilog::{Board, Clock, Options, Verilog, max_step};
@@ -49,29 +51,59 @@ fn expected(
     (stimulus.into_iter().map(|row| row.inputs).collect(), rows)
 }
 
-fn check_against_interpreter(module: &Module, seed: u64, scans: usize, period_ns: u64) {
+/// Runs a module on the interpreter and what became of it in the simulator.
+fn check_simulation(before: &Module, after: &Module, seed: u64, scans: usize, period_ns: u64) {
     let clock = Clock::period_ns(period_ns).unwrap();
-    let (inputs, rows) = expected(module, seed, scans, period_ns);
+    let (inputs, rows) = expected(before, seed, scans, period_ns);
     for narrow in [false, true] {
-        let options = options(module, clock, narrow);
-        let verified = verify(module).unwrap();
-        let mut sim = VerilogSim::start(verified, &options, period_ns)
-            .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-        let found = sim.run(module, &inputs);
+        let options = options(after, clock, narrow);
+        let sim = VerilogSim::start(verify(after).unwrap(), &options, period_ns);
+        let mut sim = sim.unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let found = sim.run(after, &inputs);
         for (scan, (expected, found)) in rows.iter().zip(&found).enumerate() {
             assert_eq!(
                 expected,
                 found,
                 "seed {seed}, ranges {narrow}, scan {scan}\n{}",
-                print_module(module)
+                print_module(after)
             );
         }
     }
 }
 
+fn check_against_interpreter(module: &Module, seed: u64, scans: usize, period_ns: u64) {
+    check_simulation(module, module, seed, scans, period_ns);
+}
+
+#[test]
+fn whole_programs_run_in_hardware_as_on_the_interpreter() {
+    let mut converted = 0;
+    let seeds = seeds(24);
+    let programs = seeds.end;
+    for seed in seeds {
+        let before = random_module(seed, &random_ir::Options::hardware());
+        let period_ns = [1_000, 333_333, 10 * MS][seed as usize % 3];
+        let settings = Settings {
+            longest_period_ns: Some(period_ns),
+        };
+        let mut after = before.clone();
+        run_pipeline(&mut after, HARDWARE, &settings, &mut |_, _| {}).unwrap();
+        // Outputs that are stored on some ways only keep their branches: refused, not wrong.
+        if after.funcs[after.scan].layout.len() > 1 {
+            continue;
+        }
+        converted += 1;
+        check_simulation(&before, &after, seed, 60, period_ns);
+    }
+    assert!(
+        converted * 4 >= programs,
+        "{converted} of {programs} programs became one block"
+    );
+}
+
 #[test]
 fn random_modules_run_as_on_the_interpreter() {
-    for seed in 0..60 {
+    for seed in seeds(60) {
         let module = one_block_module(seed, 60);
         let period_ns = [20, 1_000, 333_333, 10 * MS, 10_333_333][seed as usize % 5];
         check_against_interpreter(&module, seed, 150, period_ns);

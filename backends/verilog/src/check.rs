@@ -95,8 +95,8 @@ impl Check<'_> {
             }
         }
         if func.layout.len() > 1 && self.errors.is_empty() {
-            let message = "the scan has branches left that hardware needs as choices between values; \
-                           run the passes for hardware first";
+            let message = "branches are left in the scan where hardware needs choices between values: outputs \
+                           are stored on some ways only, or the passes for hardware were not run";
             self.refuse(Refusal::Option, None, message);
         }
     }
