@@ -33,7 +33,7 @@ mod split;
 mod state;
 mod step_time;
 
-pub use range::ranges;
+pub use range::{ranges, ranges_given};
 pub use settings::Settings;
 
 use iecc_ir::Module;
@@ -173,7 +173,22 @@ pub const HARDWARE: &[&str] = &[
     "cse",
     "fold",
     "dce",
+    "range_fold",
+    "state",
+    "fold",
+    "cse",
+    "saturate",
+    "range_fold",
+    "state",
+    "fold",
+    "cse",
+    "range_fold",
+    "dce",
 ];
+
+/// For hardware, behind [`HARDWARE`]: makes the scan faster by keeping more state. What the state can
+/// hold is better found out before, because these bits hide why it holds.
+pub const HARDWARE_SPEED: &[&str] = &["early_compare", "fold", "cse", "state", "fold", "dce"];
 
 /// The passes after which the state at the end of a scan is no longer what the program says, in
 /// layout or in value: for targets that publish outputs only. All others keep it bit for bit.

@@ -2,6 +2,8 @@
 //!
 //! * What can only be one number becomes that constant.
 //! * `x >= k`, where x is never above k, becomes `x == k`; so at every edge of a range.
+//! * What a bit can only be when another bit lets it through is put there: a timer's `EN or not DN`
+//!   is 1, because DN without EN does not happen.
 //! * A comparison of a state leaf that a flag beside it decides becomes that flag: a timer's
 //!   `ACC == PRE` is its DN.
 //!
@@ -12,7 +14,7 @@ use crate::edit::{BlockEditor, hoist_loads, replace_values};
 use crate::range::Analysis;
 use crate::scan_form::ScanForm;
 use iecc_ir::analysis::Range;
-use iecc_ir::{CompareOp, Function, InstData, Module, Root, Type, UnaryOp, Value};
+use iecc_ir::{BinaryOp, CompareOp, Function, InstData, Module, Root, Type, UnaryOp, Value};
 use std::collections::HashMap;
 
 /// Runs the pass.
@@ -32,6 +34,15 @@ enum Replacement {
     /// The flag, or its opposite.
     Flag(Value, bool),
     Compare(CompareOp, Value, i64),
+    /// A choice with arms that are constant when they are chosen.
+    Select(Value, [Arm; 2]),
+}
+
+/// An arm of a select.
+#[derive(Clone, Copy)]
+enum Arm {
+    Value(Value),
+    Bit(bool),
 }
 
 fn plan(module: &Module, settings: &Settings) -> HashMap<Value, Replacement> {
@@ -63,6 +74,11 @@ fn replacement(analysis: &Analysis<'_>, func: &Function, value: Value) -> Option
     if let Some(k) = analysis.base(value).as_constant() {
         return Some(Replacement::Constant(k as u64 & ty.mask()));
     }
+    if ty == Type::I1
+        && let Some(found) = gate(analysis, value, inst)
+    {
+        return Some(found);
+    }
     let InstData::Compare { op, args } = inst else {
         return None;
     };
@@ -75,6 +91,40 @@ fn replacement(analysis: &Analysis<'_>, func: &Function, value: Value) -> Option
     }
     let (op, k) = at_edge(op, analysis.base(x), k)?;
     Some(Replacement::Compare(op, x, k))
+}
+
+/// What operands say about each other.
+fn gate(analysis: &Analysis<'_>, value: Value, inst: &InstData) -> Option<Replacement> {
+    match inst {
+        InstData::Binary {
+            op: op @ (BinaryOp::And | BinaryOp::Or),
+            args,
+        } => {
+            // An operand that lets the other through decides nothing itself.
+            let neutral = *op == BinaryOp::And;
+            for bit in [false, true] {
+                if analysis.is_never(value, !bit) {
+                    return Some(Replacement::Constant(u64::from(bit)));
+                }
+            }
+            [(args[0], args[1]), (args[1], args[0])]
+                .into_iter()
+                .find_map(|(a, b)| {
+                    let passes = analysis.bit_when(a, neutral, b)? == neutral;
+                    passes.then_some(Replacement::Flag(a, true))
+                })
+        }
+        InstData::Select { cond, args } => {
+            let arm = |value, is| match analysis.bit_when(*cond, is, value) {
+                Some(bit) => Arm::Bit(bit),
+                None => Arm::Value(value),
+            };
+            let arms = [arm(args[0], true), arm(args[1], false)];
+            let learned = arms.iter().any(|arm| matches!(arm, Arm::Bit(_)));
+            learned.then_some(Replacement::Select(*cond, arms))
+        }
+        _ => None,
+    }
 }
 
 /// The comparison as `x op k`, signed where that is the same.
@@ -147,6 +197,13 @@ fn apply(func: &mut Function, form: &ScanForm, replacements: &HashMap<Value, Rep
                 op: UnaryOp::Not,
                 arg: flag,
             },
+            Replacement::Select(cond, arms) => {
+                let args = arms.map(|arm| match arm {
+                    Arm::Value(value) => value,
+                    Arm::Bit(bit) => editor.constant(Type::I1, u64::from(bit)),
+                });
+                InstData::Select { cond, args }
+            }
             Replacement::Compare(op, x, k) => {
                 let k = editor.constant(editor.func.value_type(x), k as u64);
                 InstData::Compare { op, args: [x, k] }

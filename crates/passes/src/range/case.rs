@@ -15,10 +15,16 @@ use std::collections::BTreeMap;
 pub(super) const DEPTH: u32 = 16;
 /// How far facts look into operands.
 const FACT_DEPTH: u32 = 5;
+/// How far bits are followed: facts about them do more than looking at rungs.
+const BIT_DEPTH: u32 = 3;
 /// How many selects may split one case.
 const SPLITS: u32 = 4;
+/// How many steps from an assumption facts are followed: a rung is not worth it.
+const FAR: u32 = 6;
 /// How many facts a case follows before it stops learning.
 const FACTS: usize = 64;
+/// How many ranges one question may compute, in all the cases it splits into.
+pub(super) const WORK: u32 = 3000;
 
 /// Facts that hold together. `None` from a method means they contradict each other: the case
 /// cannot happen.
@@ -26,20 +32,28 @@ const FACTS: usize = 64;
 pub(super) struct Case<'a, 'm> {
     analysis: &'a Analysis<'m>,
     facts: BTreeMap<Value, Range>,
-    assumed: Vec<Value>,
+    /// Facts to follow, and how many steps they are from what was assumed.
+    assumed: Vec<(Value, u32)>,
+    /// Steps of the fact that is being followed.
+    distance: u32,
     /// Flags (leaf indices) whose value at the start of the scan is known.
     flags: BTreeMap<usize, bool>,
+    /// Ranges computed under the facts, and how deep that looked.
+    computed: BTreeMap<Value, u32>,
     splits: u32,
 }
 
 impl<'a, 'm> Case<'a, 'm> {
-    /// A case without assumptions.
+    /// A case without assumptions: the start of a question.
     pub(super) fn new(analysis: &'a Analysis<'m>) -> Self {
+        analysis.work.set(WORK);
         Self {
             analysis,
             facts: BTreeMap::new(),
             assumed: Vec::new(),
+            distance: 0,
             flags: BTreeMap::new(),
+            computed: BTreeMap::new(),
             splits: 0,
         }
     }
@@ -55,12 +69,15 @@ impl<'a, 'm> Case<'a, 'm> {
 
     /// Assumes that a value lies in a range, with all that follows.
     pub(super) fn assume(&mut self, value: Value, range: Range) -> Option<()> {
+        self.distance = 0;
         self.learn(value, range)?;
         // New facts may decide earlier ones; a few rounds settle it, more would only be sharper.
         for _ in 0..4 {
             let before = self.assumed.len();
             for index in 0..self.assumed.len() {
-                self.follow(self.assumed[index])?;
+                let (value, distance) = self.assumed[index];
+                self.distance = distance + 1;
+                self.follow(value)?;
             }
             if self.assumed.len() == before {
                 break;
@@ -79,8 +96,9 @@ impl<'a, 'm> Case<'a, 'm> {
         let narrowed = known.intersection(range)?;
         if narrowed != known {
             self.facts.insert(value, narrowed);
-            if self.assumed.len() < FACTS {
-                self.assumed.push(value);
+            self.computed.clear();
+            if self.assumed.len() < FACTS && self.distance <= FAR {
+                self.assumed.push((value, self.distance));
             }
             if let Some(leaf) = self.analysis.flag_of(value)
                 && let Some(flag) = narrowed.as_constant()
@@ -253,15 +271,25 @@ impl<'a, 'm> Case<'a, 'm> {
     /// The range of an integer value in this case.
     pub(super) fn range(&mut self, value: Value, depth: u32) -> Option<Range> {
         let known = self.known(value);
-        if depth == 0 || known.as_constant().is_some() {
+        let is_bit = self.analysis.func.value_type(value) == Type::I1;
+        let depth = if is_bit { depth.min(BIT_DEPTH) } else { depth };
+        let looked = self.computed.get(&value).copied().unwrap_or(0);
+        if depth <= looked || known.as_constant().is_some() || !self.may_work() {
             return Some(known);
         }
+        self.computed.insert(value, depth);
         let computed = self.compute(value, depth - 1)?;
         let narrowed = known.intersection(computed)?;
         if narrowed != known {
             self.facts.insert(value, narrowed);
         }
         Some(narrowed)
+    }
+
+    fn may_work(&self) -> bool {
+        let left = self.analysis.work.get();
+        self.analysis.work.set(left.saturating_sub(1));
+        left > 0
     }
 
     fn compute(&mut self, value: Value, depth: u32) -> Option<Range> {

@@ -17,19 +17,42 @@ use case::{Case, DEPTH};
 use cranelift_entity::SecondaryMap;
 use iecc_ir::analysis::{Range, Ranges};
 use iecc_ir::{CompareOp, Function, InstData, Module, Projection, Root, Type, Value};
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Rounds before growth jumps to thresholds, and before it jumps to the whole type.
 const EXACT_ROUNDS: u32 = 2;
 const THRESHOLD_ROUNDS: u32 = 48;
-/// How many instructions behind a leaf are searched for thresholds.
-const CONE: usize = 400;
+/// How many values behind a leaf are searched for thresholds.
+const CONE: usize = 100;
+/// How many flags beside a leaf are told apart.
+const MAX_FLAGS: usize = 8;
 /// How deep an integer select is looked into when no assumption is made.
 const SELECT_DEPTH: u32 = 8;
 
 /// The ranges of a module's scan. `max_step(unit_ns)` is the largest value `step` can have.
 pub fn ranges(module: &Module, max_step: &dyn Fn(u64) -> u64) -> Ranges {
     Analysis::of(module, max_step).map_or_else(Ranges::default, Analysis::result)
+}
+
+/// The ranges of a module's scan, given what is already known of its state at scan boundaries. For
+/// modules from which a pass has taken what would prove it again.
+pub fn ranges_given(module: &Module, known: &Ranges, max_step: &dyn Fn(u64) -> u64) -> Ranges {
+    let Some(form) = ScanForm::of(module) else {
+        return Ranges::default();
+    };
+    let mut analysis = Analysis::new(&module.funcs[module.scan], form, max_step);
+    for (leaf, state) in analysis.form.leaves.iter().zip(&mut analysis.state) {
+        if leaf.ty.is_int() {
+            let whole = known.leaf(&leaf.place, leaf.ty);
+            *state = LeafState {
+                whole,
+                by_flag: BTreeMap::new(),
+            };
+        }
+    }
+    analysis.compute_base();
+    analysis.result()
 }
 
 /// What is known of a leaf at scan boundaries.
@@ -62,6 +85,8 @@ pub(crate) struct Analysis<'m> {
     base: SecondaryMap<Value, Option<Range>>,
     state: Vec<LeafState>,
     thresholds: Vec<Vec<i64>>,
+    /// What the present question may still compute.
+    work: Cell<u32>,
 }
 
 impl<'m> Analysis<'m> {
@@ -117,11 +142,11 @@ impl<'m> Analysis<'m> {
             .zip(&flags)
             .map(|(leaf, flags)| initial(&form.leaves, leaf, flags))
             .collect();
-        let thresholds = form.leaves.iter().zip(&flags).map(|(leaf, flags)| {
-            let beside = flags.iter().map(|&flag| &form.leaves[flag]);
-            let start = |value| leaf_index[value].map(|index: u32| &form.leaves[index as usize]);
-            thresholds(func, &start, std::iter::once(leaf).chain(beside))
-        });
+        let compared = compared_with(func, &form);
+        let thresholds = form
+            .leaves
+            .iter()
+            .map(|leaf| thresholds(func, &compared, leaf));
         let thresholds = thresholds.collect();
         Self {
             func,
@@ -131,12 +156,27 @@ impl<'m> Analysis<'m> {
             base: SecondaryMap::new(),
             state,
             thresholds,
+            work: Cell::new(0),
         }
     }
 
     /// The range of a value without assumptions.
     pub(crate) fn base(&self, value: Value) -> Range {
         self.base[value].unwrap_or_else(|| Range::of_type(self.func.value_type(value)))
+    }
+
+    /// The bit that `value` must be when `condition` has the given value, if it is the same always.
+    pub(crate) fn bit_when(&self, condition: Value, is: bool, value: Value) -> Option<bool> {
+        let mut case = Case::new(self);
+        case.assume(condition, Range::constant(i64::from(is)))?;
+        case.range(value, DEPTH)?.as_constant().map(|bit| bit == 1)
+    }
+
+    /// Whether a bit can never have this value.
+    pub(crate) fn is_never(&self, value: Value, bit: bool) -> bool {
+        Case::new(self)
+            .assume(value, Range::constant(i64::from(bit)))
+            .is_none()
     }
 
     /// The index of the leaf whose load a value is.
@@ -317,7 +357,7 @@ fn whole(by_flag: &BTreeMap<usize, [Option<Range>; 2]>, old: Range) -> Range {
         .unwrap_or(old)
 }
 
-/// For each integer leaf wider than a bit the indices of the `i1` leaves in the same struct.
+/// For each integer leaf the indices of the other `i1` leaves in the same struct.
 fn flags_beside(leaves: &[Leaf]) -> Vec<Vec<usize>> {
     let mut by_parent: BTreeMap<&[Projection], Vec<usize>> = BTreeMap::new();
     for (index, leaf) in leaves.iter().enumerate() {
@@ -325,14 +365,19 @@ fn flags_beside(leaves: &[Leaf]) -> Vec<Vec<usize>> {
             by_parent.entry(parent(leaf)).or_default().push(index);
         }
     }
-    let beside = |leaf: &Leaf| match leaf.ty {
+    let beside = |(own, leaf): (usize, &Leaf)| {
         // The top level of the state is no unit of meaning; there may be thousands of flags.
-        Type::I8 | Type::I16 | Type::I32 | Type::I64 if leaf.place.path.len() > 1 => {
-            by_parent.get(parent(leaf)).cloned().unwrap_or_default()
+        if leaf.ty.is_float() || leaf.place.path.len() == 1 {
+            return Vec::new();
         }
-        _ => Vec::new(),
+        let flags = by_parent.get(parent(leaf)).into_iter().flatten();
+        flags
+            .copied()
+            .filter(|&flag| flag != own)
+            .take(MAX_FLAGS)
+            .collect()
     };
-    leaves.iter().map(beside).collect()
+    leaves.iter().enumerate().map(beside).collect()
 }
 
 fn parent(leaf: &Leaf) -> &[Projection] {
@@ -358,31 +403,62 @@ fn initial(leaves: &[Leaf], leaf: &Leaf, flags: &[usize]) -> LeafState {
     }
 }
 
-/// The constants and initial values near a leaf's computation, each with its neighbours, ascending.
-/// `start` gives the leaf whose load a value is.
-fn thresholds<'l>(
-    func: &Function,
-    start: &dyn Fn(Value) -> Option<&'l Leaf>,
-    leaves: impl Iterator<Item = &'l Leaf>,
-) -> Vec<i64> {
-    let mut found = BTreeSet::from([0]);
-    let mut add = |ty: Type, bits| {
-        let k = ty.signed(bits);
-        found.extend([k.saturating_sub(1), k, k.saturating_add(1)]);
+/// The numbers that values are compared with: constants, and starts of leaves that may be constant.
+fn compared_with(func: &Function, form: &ScanForm) -> BTreeMap<Value, Vec<i64>> {
+    let starts: BTreeMap<Value, u64> = form
+        .leaves
+        .iter()
+        .filter_map(|leaf| Some((leaf.load?, leaf.init)))
+        .collect();
+    let number = |value: Value| {
+        let bits = func.constant(value).or_else(|| starts.get(&value).copied());
+        bits.map(|bits| func.value_type(value).signed(bits))
     };
-    let mut queue: Vec<Value> = leaves.filter_map(|leaf| leaf.next).collect();
+    let mut compared: BTreeMap<Value, Vec<i64>> = BTreeMap::new();
+    for &inst in &func.block(form.block).insts {
+        let InstData::Compare { args: [a, b], .. } = func.inst(inst) else {
+            continue;
+        };
+        if func.value_type(*a).is_int() {
+            for (x, k) in [(*a, number(*b)), (*b, number(*a))] {
+                compared.entry(x).or_default().extend(k);
+            }
+        }
+    }
+    compared
+}
+
+/// Where the growth of a leaf may stop: the numbers that it, and what its next value is made from,
+/// is compared with or set to, each with its neighbours, ascending. Conditions are not followed,
+/// other leaves have their own thresholds.
+fn thresholds(func: &Function, compared: &BTreeMap<Value, Vec<i64>>, leaf: &Leaf) -> Vec<i64> {
+    let mut numbers = vec![0];
+    let mut queue: Vec<Value> = leaf.next.into_iter().chain(leaf.load).collect();
     let mut seen: BTreeSet<Value> = queue.iter().copied().collect();
     let mut next = 0;
     while let Some(&value) = queue.get(next).filter(|_| next < CONE) {
         next += 1;
-        if let Some(leaf) = start(value).filter(|leaf| leaf.ty.is_int() && leaf.ty != Type::I1) {
-            add(leaf.ty, leaf.init);
-        }
-        match func.def_inst(value) {
-            Some(InstData::Const { ty, bits }) if ty.is_int() && *ty != Type::I1 => add(*ty, *bits),
-            Some(inst) => queue.extend(inst.values().into_iter().filter(|v| seen.insert(*v))),
-            None => {}
-        }
+        numbers.extend(compared.get(&value).into_iter().flatten());
+        let operands = match func.def_inst(value) {
+            Some(InstData::Const { ty, bits }) => {
+                numbers.push(ty.signed(*bits));
+                Vec::new()
+            }
+            Some(InstData::Select { args, .. }) => args.to_vec(),
+            Some(InstData::Load { .. } | InstData::Compare { .. }) | None => Vec::new(),
+            Some(inst) => inst.values(),
+        };
+        queue.extend(
+            operands
+                .into_iter()
+                .filter(|v| func.value_type(*v) != Type::I1 && seen.insert(*v)),
+        );
     }
-    found.into_iter().collect()
+    let beside = |k: i64| [k.saturating_sub(1), k, k.saturating_add(1)];
+    numbers
+        .into_iter()
+        .flat_map(beside)
+        .collect::<BTreeSet<i64>>()
+        .into_iter()
+        .collect()
 }
