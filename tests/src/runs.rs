@@ -108,14 +108,14 @@ pub fn opened(mut module: Module, stimulus: &str, watches: &[&str]) -> (Module, 
     }
 }
 
-/// Every engine of this computer with its name: those that users can choose, and machine code of
-/// the module as it stands, before the passes.
+/// Every engine with its name, for a scan every `period_ns`: those that users can choose, and machine
+/// code of the module as it stands, before the passes.
 ///
 /// # Panics
 /// If an engine cannot run the module.
-pub fn engines(module: &Module) -> Vec<(&'static str, Box<dyn Engine>)> {
+pub fn engines(module: &Module, period_ns: u64) -> Vec<(&'static str, Box<dyn Engine>)> {
     let start = |kind: EngineKind| {
-        kind.start(module)
+        kind.start(module, period_ns)
             .unwrap_or_else(|found| panic!("{found:?}"))
     };
     let verified = verify(module).expect("the module keeps the rules");
@@ -124,6 +124,7 @@ pub fn engines(module: &Module) -> Vec<(&'static str, Box<dyn Engine>)> {
         ("interpreter", start(EngineKind::Interp)),
         ("machine code", start(EngineKind::Jit)),
         ("machine code without passes", Box::new(unchanged)),
+        ("simulated Verilog", start(EngineKind::Verilog)),
     ]
 }
 

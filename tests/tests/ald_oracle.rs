@@ -53,7 +53,7 @@ fn agrees_with(file: &str, init: Init) {
     };
     let (module, session) = opened(compiled(&path, &options), STIMULUS, &columns);
     let schedule = Schedule::for_scans(PERIOD_NS, SCANS).expect("a legal schedule");
-    for (name, mut engine) in engines(&module) {
+    for (name, mut engine) in engines(&module, PERIOD_NS) {
         let found = rows(&session, &mut *engine, schedule).select(&columns);
         let found = in_oracle_form(header, &found);
         for (number, (found, expected)) in found.lines().zip(expected.lines()).enumerate() {

@@ -106,7 +106,7 @@ fn engines_agree_on_twenty_thousand_random_scans() {
     let plain = compiled(&shared.join(path), &options);
     let (module, session) = opened(plain.clone(), &stimulus(1), &all_tags(&plain));
     let schedule = Schedule::for_scans(PERIOD_MS * 1_000_000, SCANS).expect("a legal schedule");
-    let mut engines = engines(&module).into_iter();
+    let mut engines = engines(&module, schedule.period_ns()).into_iter();
     let (_, mut reference) = engines.next().expect("the interpreter");
     let expected = rows(&session, &mut *reference, schedule);
     #[expect(clippy::print_stdout, reason = "the coverage is to be seen")]

@@ -4,6 +4,7 @@
 //! Exit code 0: done; 1: the program has errors and nothing was built; 2: wrong usage; 101: a
 //! mistake in iecc itself, with a request to report it.
 
+mod build;
 mod check;
 mod explain;
 mod ir;
@@ -39,6 +40,7 @@ Exit codes: 0 done; 1 the program has errors, nothing was built; 2 wrong usage."
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Build(build::Arguments),
     Check(check::Arguments),
     Run(run::Arguments),
     Ir(ir::Arguments),
@@ -53,6 +55,7 @@ fn main() -> ExitCode {
     } = Arguments::parse();
     let mut messages = Messages::default();
     match command {
+        Command::Build(arguments) => build::run(&arguments, &mut messages),
         Command::Check(arguments) => check::run(&arguments, &mut messages),
         Command::Run(arguments) => run::run(&arguments, &mut messages),
         Command::Ir(arguments) => {

@@ -63,6 +63,8 @@ enum EngineChoice {
     Jit,
     /// The reference interpreter: the definition of what the program means
     Interp,
+    /// The hardware of `iecc build`, simulated by Icarus Verilog
+    Verilog,
 }
 
 fn time(text: &str) -> Result<u64, String> {
@@ -120,7 +122,7 @@ impl Arguments {
             let trace = TraceFile::create(path, &module.name, columns, schedule, self.changes);
             traces.0.push(trace.map_err(|d| vec![d])?);
         }
-        let mut engine = self.engine().start(module)?;
+        let mut engine = self.engine().start(module, self.period_ns)?;
         let bar = progress_bar(schedule.scans());
         let told = session.run(engine.as_mut(), schedule, &mut traces, &mut |scan| {
             bar.set_position(scan);
@@ -136,6 +138,7 @@ impl Arguments {
         match self.engine {
             EngineChoice::Jit => EngineKind::Jit,
             EngineChoice::Interp => EngineKind::Interp,
+            EngineChoice::Verilog => EngineKind::Verilog,
         }
     }
 }

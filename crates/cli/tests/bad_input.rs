@@ -44,10 +44,11 @@ fn iecc(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 /// Every command that makes something, with the place where it would.
-const COMMANDS: [&[&str]; 3] = [
+const COMMANDS: [&[&str]; 4] = [
     &["check", "a.L5X"],
     &["run", "a.L5X", "--scans", "1", "--trace", "out.csv"],
     &["ir", "a.L5X"],
+    &["build", "--target", "verilog", "a.L5X", "-o", "out"],
 ];
 
 /// Each command gives exactly these messages, exit code 1, and leaves no file.
@@ -124,6 +125,7 @@ fn the_file_of_these_tests_is_right_without_the_mistakes() {
         assert_eq!(output.status.code(), Some(0), "{command:?}");
     }
     assert!(folder.path().join("out.csv").is_file());
+    assert!(folder.path().join("out/C.v").is_file());
 }
 
 #[test]
@@ -245,4 +247,34 @@ fn a_trace_that_cannot_be_written_leaves_nothing() {
         );
         assert_eq!(fs::read_dir(folder.path()).expect("readable").count(), 1);
     }
+}
+
+#[test]
+fn build_says_which_files_it_wrote_and_an_unknown_board_writes_none() {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(
+        folder.path().join("a.L5X"),
+        export(TAGS, &["XIC(run)OTE(run);"]),
+    )
+    .expect("written");
+    let build = ["build", "--target", "verilog", "a.L5X", "-o", "out"];
+    let output = iecc(
+        folder.path(),
+        &[&build[..], &["--board", "abacus"]].concat(),
+    );
+    assert_eq!(output.status.code(), Some(1));
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    let first = "error[E7008]: there is no board `abacus`, but de2-115, hx8k\n";
+    assert!(message.starts_with(first), "{message}");
+    assert!(!folder.path().join("out").exists());
+
+    let output = iecc(folder.path(), &build);
+    assert_eq!(output.status.code(), Some(0));
+    let listed = String::from_utf8(output.stdout).expect("UTF-8");
+    assert!(listed.lines().any(|line| line == "out/C.v"), "{listed}");
+    for line in listed.lines() {
+        assert!(folder.path().join(line).is_file(), "{line}");
+    }
+    let written = fs::read_dir(folder.path().join("out")).expect("readable");
+    assert_eq!(written.count(), listed.lines().count());
 }

@@ -147,6 +147,7 @@ codes! {
     E7006 Error "target has no absolute time";
     E7007 Error "program is too large for the target";
     E7008 Error "option does not fit the program or the board";
+    E7009 Error "simulator cannot be started";
 }
 
 impl Code {

@@ -3,6 +3,7 @@
 //! The only crate besides the command line that reads files. Every command and every test goes
 //! through the functions here, so there is one pipeline and no second, laxer path.
 
+mod build;
 mod engine;
 mod explain;
 mod front;
@@ -12,6 +13,7 @@ mod refusal;
 pub mod run;
 pub mod sim;
 
+pub use build::{VerilogRequest, build_verilog};
 pub use engine::EngineKind;
 pub use explain::{explain_instruction, list_instructions};
 pub use front::{FrontOptions, TimerBase, check, compile, load};

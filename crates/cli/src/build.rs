@@ -1,0 +1,97 @@
+//! `iecc build`: a program as files of a target.
+
+use crate::messages::Messages;
+use crate::program::Program;
+use crate::terminal;
+use clap::ValueEnum;
+use iecc_driver::run::parse_duration;
+use iecc_driver::{VerilogRequest, build_verilog, load, write_artifacts};
+use std::path::PathBuf;
+
+/// Make hardware of a program
+#[derive(Debug, clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    program: Program,
+
+    /// What to make
+    #[arg(long, value_enum)]
+    target: TargetChoice,
+
+    /// Where the files go
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+
+    /// Frequency of the hardware's clock in hertz; one scan runs in every clock [default: that of
+    /// the board, else 50000000]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u64).range(1..))]
+    clock_hz: Option<u64>,
+
+    /// The tick from which the hardware counts all times, such as 1ms or 1us; it changes the
+    /// hardware, never the results [default: the finest unit in use]
+    #[arg(long = "tick", value_name = "TIME", value_parser = tick)]
+    tick_ns: Option<u64>,
+
+    /// Make a project for a board, such as de2-115 or hx8k
+    #[arg(long, value_name = "NAME")]
+    board: Option<String>,
+
+    /// Which port is on which pin of the board
+    #[arg(long, value_name = "FILE", requires = "board")]
+    pins: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum TargetChoice {
+    /// Verilog for any FPGA
+    Verilog,
+}
+
+fn tick(text: &str) -> Result<u64, String> {
+    match parse_duration(text) {
+        Ok(0) => Err("a tick is not zero".to_owned()),
+        Ok(tick_ns) => Ok(tick_ns),
+        Err(diagnostic) => Err(diagnostic.message),
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
+    let Some(module) = arguments.program.compile(messages) else {
+        return;
+    };
+    let Some(request) = arguments.request(messages) else {
+        return;
+    };
+    let made = match arguments.target {
+        TargetChoice::Verilog => build_verilog(module, &request),
+    };
+    let written = made.and_then(|files| {
+        write_artifacts(&arguments.output, &files).map_err(|diagnostic| vec![diagnostic])
+    });
+    match written {
+        Ok(paths) => {
+            for path in paths {
+                terminal::print(&format!("{}\n", path.display()));
+            }
+        }
+        Err(found) => found.into_iter().for_each(|d| messages.diagnostics.push(d)),
+    }
+}
+
+impl Arguments {
+    fn request(&self, messages: &mut Messages) -> Option<VerilogRequest> {
+        let pins = match &self.pins {
+            None => None,
+            Some(path) => {
+                let file = load(&mut messages.map, path, &mut messages.diagnostics)?;
+                Some(messages.map.file(file).text().to_owned())
+            }
+        };
+        Some(VerilogRequest {
+            clock_hz: self.clock_hz,
+            tick_ns: self.tick_ns,
+            board: self.board.clone(),
+            pins,
+        })
+    }
+}
