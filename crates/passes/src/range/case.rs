@@ -20,11 +20,11 @@ const BIT_DEPTH: u32 = 3;
 /// How many selects may split one case.
 const SPLITS: u32 = 4;
 /// How many steps from an assumption facts are followed: a rung is not worth it.
-const FAR: u32 = 6;
+const FAR: u32 = 4;
 /// How many facts a case follows before it stops learning.
 const FACTS: usize = 64;
 /// How many ranges one question may compute, in all the cases it splits into.
-pub(super) const WORK: u32 = 3000;
+pub(super) const WORK: u32 = 8_000;
 
 /// Facts that hold together. `None` from a method means they contradict each other: the case
 /// cannot happen.
@@ -79,8 +79,21 @@ impl<'a, 'm> Case<'a, 'm> {
                 self.distance = distance + 1;
                 self.follow(value)?;
             }
+            self.check_loads()?;
             if self.assumed.len() == before {
                 break;
+            }
+        }
+        Some(())
+    }
+
+    /// What is known of loads must be possible with the flags that are known by now.
+    fn check_loads(&self) -> Option<()> {
+        for (value, fact) in &self.facts {
+            if let Some(leaf) = self.analysis.leaf_of(*value) {
+                self.analysis.state[leaf]
+                    .given(&self.flags)?
+                    .intersection(*fact)?;
             }
         }
         Some(())

@@ -26,7 +26,9 @@ const THRESHOLD_ROUNDS: u32 = 48;
 /// How many values behind a leaf are searched for thresholds.
 const CONE: usize = 100;
 /// How many flags beside a leaf are told apart.
-const MAX_FLAGS: usize = 8;
+const MAX_FLAGS: usize = 6;
+/// How far behind the next value of a number its gating flags are looked for.
+const GATES: u32 = 5;
 /// How deep an integer select is looked into when no assumption is made.
 const SELECT_DEPTH: u32 = 8;
 
@@ -51,7 +53,7 @@ pub fn ranges_given(module: &Module, known: &Ranges, max_step: &dyn Fn(u64) -> u
             };
         }
     }
-    analysis.compute_base();
+    analysis.compute_base(SELECT_DEPTH);
     analysis.result()
 }
 
@@ -135,7 +137,10 @@ impl<'m> Analysis<'m> {
                 leaf_index[load] = Some(index as u32);
             }
         }
-        let flags = flags_beside(&form.leaves);
+        let mut flags = flags_beside(&form.leaves);
+        for (leaf, flags) in form.leaves.iter().zip(&mut flags) {
+            add_gating_flags(func, &leaf_index, leaf, flags);
+        }
         let state = form
             .leaves
             .iter()
@@ -191,9 +196,10 @@ impl<'m> Analysis<'m> {
     }
 
     fn solve(&mut self) {
+        self.settle_flags();
         let mut round = 0;
         loop {
-            self.compute_base();
+            self.compute_base(SELECT_DEPTH);
             let mut changed = false;
             for index in 0..self.state.len() {
                 changed |= self.grow(index, round);
@@ -205,8 +211,50 @@ impl<'m> Analysis<'m> {
         }
     }
 
-    /// Ranges of all values from the current state, without assumptions.
-    fn compute_base(&mut self) {
+    /// Finds flags that never change, with all numbers open. One timer enables the next, so flags
+    /// settle one after the other; numbers would have to wait for them in every round.
+    fn settle_flags(&mut self) {
+        let start: Vec<LeafState> = self.state.clone();
+        for (leaf, state) in self.form.leaves.iter().zip(&mut self.state) {
+            state.by_flag.clear();
+            if leaf.ty.is_int() && leaf.ty != Type::I1 && leaf.next.is_some() {
+                state.whole = Range::of_type(leaf.ty);
+            }
+        }
+        loop {
+            self.compute_base(1);
+            let flags = self
+                .form
+                .leaves
+                .iter()
+                .enumerate()
+                .filter(|(_, leaf)| leaf.ty == Type::I1);
+            let grown: Vec<(usize, Range)> = flags
+                .filter_map(|(index, leaf)| {
+                    Some((index, self.base(leaf.next?).union(self.state[index].whole)))
+                })
+                .filter(|&(index, whole)| whole != self.state[index].whole)
+                .collect();
+            if grown.is_empty() {
+                break;
+            }
+            for (index, whole) in grown {
+                self.state[index].whole = whole;
+            }
+        }
+        for (settled, start) in self.state.iter_mut().zip(start) {
+            let whole = if settled.whole == Range::new(0, 1) {
+                settled.whole
+            } else {
+                start.whole
+            };
+            *settled = LeafState { whole, ..start };
+        }
+    }
+
+    /// Ranges of all values from the current state, without assumptions; selects of numbers are
+    /// looked into that deep.
+    fn compute_base(&mut self, select_depth: u32) {
         self.base.clear();
         let insts = &self.func.block(self.form.block).insts;
         for &inst in insts {
@@ -215,13 +263,13 @@ impl<'m> Analysis<'m> {
             };
             let ty = self.func.value_type(value);
             if ty.is_int() {
-                let range = self.transfer(self.func.inst(inst), value, ty);
+                let range = self.transfer(self.func.inst(inst), value, ty, select_depth);
                 self.base[value] = Some(range);
             }
         }
     }
 
-    fn transfer(&self, inst: &InstData, value: Value, ty: Type) -> Range {
+    fn transfer(&self, inst: &InstData, value: Value, ty: Type, select_depth: u32) -> Range {
         match inst {
             InstData::Const { bits, .. } => Range::of_bits(ty, *bits),
             InstData::Load { place } if place.root == Root::State => self
@@ -234,7 +282,7 @@ impl<'m> Analysis<'m> {
             InstData::Now => Range::new(0, i64::MAX),
             // Only here do paths matter; a flag's own value needs no context.
             InstData::Select { .. } if ty != Type::I1 => Case::new(self)
-                .range(value, SELECT_DEPTH)
+                .range(value, select_depth)
                 .unwrap_or(Range::of_type(ty)),
             InstData::Compare { args, .. } if self.func.value_type(args[0]).is_float() => {
                 Range::of_type(ty)
@@ -378,6 +426,40 @@ fn flags_beside(leaves: &[Leaf]) -> Vec<Vec<usize>> {
             .collect()
     };
     leaves.iter().enumerate().map(beside).collect()
+}
+
+/// Adds the flags that gate the next value of a number: those near the conditions of its selects.
+/// A flag beside it that was merged with one elsewhere is found here.
+fn add_gating_flags(
+    func: &Function,
+    leaf_index: &SecondaryMap<Value, Option<u32>>,
+    leaf: &Leaf,
+    flags: &mut Vec<usize>,
+) {
+    if leaf.ty == Type::I1 || leaf.ty.is_float() {
+        return;
+    }
+    let mut queue: Vec<(Value, u32)> = leaf.next.map(|next| (next, GATES)).into_iter().collect();
+    let mut next = 0;
+    while let Some(&(value, depth)) = queue
+        .get(next)
+        .filter(|_| next < CONE && flags.len() < MAX_FLAGS)
+    {
+        next += 1;
+        match func.def_inst(value) {
+            Some(InstData::Load { .. }) if func.value_type(value) == Type::I1 => {
+                let flag = leaf_index[value].map(|index| index as usize);
+                flags.extend(flag.filter(|flag| !flags.contains(flag)));
+            }
+            Some(InstData::Select { .. } | InstData::Unary { .. } | InstData::Binary { .. })
+                if depth > 0 =>
+            {
+                let operands = func.def_inst(value).map_or(Vec::new(), InstData::values);
+                queue.extend(operands.into_iter().map(|operand| (operand, depth - 1)));
+            }
+            _ => {}
+        }
+    }
 }
 
 fn parent(leaf: &Leaf) -> &[Projection] {
