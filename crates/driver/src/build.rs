@@ -5,9 +5,9 @@ use crate::pipeline::Pipeline;
 use crate::refusal;
 use iecc_diag::{Code, Diagnostic};
 use iecc_ir::Module;
-use iecc_passes::Settings;
+use iecc_passes::{Settings, ranges};
 use iecc_target::{Artifact, Target};
-use iecc_verilog::{Board, Clock, Options, Verilog};
+use iecc_verilog::{Board, Clock, Options, Verilog, max_step};
 
 /// The clock of hardware for no board, in hertz.
 const USUAL_CLOCK_HZ: u64 = 50_000_000;
@@ -37,14 +37,23 @@ pub fn build_verilog(
     let board = request.board().map_err(|message| vec![option(message)])?;
     let clock = request.clock(board.as_ref());
     let clock = clock.ok_or_else(|| vec![option("the frequency of the clock is 0".to_owned())])?;
+    hardware_passes(&mut module, clock);
     let options = Options {
         tick_ns: request.tick_ns,
+        ranges: ranges(&module, &|unit_ns| max_step(clock, unit_ns)),
         board,
         ..Options::new(clock)
     };
-    Pipeline::Hardware.run(&mut module, &Settings::default());
     let files = Verilog.compile(verified(&module), &options);
     files.map_err(|errors| refusal::to_diagnostics(&module, &errors))
+}
+
+/// Runs the passes for hardware, which may rely on a scan in every clock.
+pub(crate) fn hardware_passes(module: &mut Module, clock: Clock) {
+    let settings = Settings {
+        longest_period_ns: Some(max_step(clock, 1)),
+    };
+    Pipeline::Hardware.run(module, &settings);
 }
 
 impl VerilogRequest {

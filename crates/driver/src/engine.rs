@@ -1,5 +1,6 @@
 //! Every engine that can run a program, behind one door.
 
+use crate::build::hardware_passes;
 use crate::pipeline::Pipeline;
 use crate::refusal;
 use crate::sim::{SimError, VerilogSim};
@@ -7,9 +8,9 @@ use iecc_diag::{Code, Diagnostic};
 use iecc_interp::Interpreter;
 use iecc_ir::{Module, Verified, verify};
 use iecc_jit::Jit;
-use iecc_passes::Settings;
+use iecc_passes::{Settings, ranges};
 use iecc_target::Engine;
-use iecc_verilog::{Clock, Options};
+use iecc_verilog::{Clock, Options, max_step};
 
 /// What executes the scans.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +49,8 @@ impl EngineKind {
 
 fn simulate(module: &Module, period_ns: u64) -> Result<Box<dyn Engine>, Vec<Diagnostic>> {
     let mut module = module.clone();
-    Pipeline::Hardware.run(&mut module, &Settings::default());
+    let clock = Clock::period_ns(period_ns.max(1)).expect("a period of at least 1 ns");
+    hardware_passes(&mut module, clock);
     let cannot = |error: SimError| match error {
         SimError::Refused(errors) => refusal::to_diagnostics(&module, &errors),
         SimError::Compile(text) => panic!("the simulator refuses the module:\n{text}"),
@@ -56,8 +58,11 @@ fn simulate(module: &Module, period_ns: u64) -> Result<Box<dyn Engine>, Vec<Diag
             vec![Diagnostic::without_place(Code::E7009, error.to_string())]
         }
     };
-    let clock = Clock::period_ns(period_ns.max(1)).expect("a period of at least 1 ns");
-    match VerilogSim::start(verified(&module), &Options::new(clock), period_ns) {
+    let options = Options {
+        ranges: ranges(&module, &|unit_ns| max_step(clock, unit_ns)),
+        ..Options::new(clock)
+    };
+    match VerilogSim::start(verified(&module), &options, period_ns) {
         Ok(simulator) => Ok(Box::new(simulator)),
         Err(error) => Err(cannot(error)),
     }
