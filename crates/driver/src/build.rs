@@ -5,7 +5,8 @@ use crate::pipeline::Pipeline;
 use crate::refusal;
 use iecc_diag::{Code, Diagnostic};
 use iecc_ir::Module;
-use iecc_passes::{Settings, ranges};
+use iecc_ir::analysis::Ranges;
+use iecc_passes::{Settings, ranges, ranges_given};
 use iecc_target::{Artifact, Target};
 use iecc_verilog::{Board, Clock, Options, Verilog, max_step};
 
@@ -37,10 +38,9 @@ pub fn build_verilog(
     let board = request.board().map_err(|message| vec![option(message)])?;
     let clock = request.clock(board.as_ref());
     let clock = clock.ok_or_else(|| vec![option("the frequency of the clock is 0".to_owned())])?;
-    hardware_passes(&mut module, clock);
     let options = Options {
         tick_ns: request.tick_ns,
-        ranges: ranges(&module, &|unit_ns| max_step(clock, unit_ns)),
+        ranges: hardware_passes(&mut module, clock),
         board,
         ..Options::new(clock)
     };
@@ -48,12 +48,17 @@ pub fn build_verilog(
     files.map_err(|errors| refusal::to_diagnostics(&module, &errors))
 }
 
-/// Runs the passes for hardware, which may rely on a scan in every clock.
-pub(crate) fn hardware_passes(module: &mut Module, clock: Clock) {
+/// Runs the passes for hardware, which may rely on a scan in every clock, and says what the values
+/// of the result can be. The state is bounded before the passes that hide why it is.
+pub(crate) fn hardware_passes(module: &mut Module, clock: Clock) -> Ranges {
     let settings = Settings {
         longest_period_ns: Some(max_step(clock, 1)),
     };
+    let steps = |unit_ns| max_step(clock, unit_ns);
     Pipeline::Hardware.run(module, &settings);
+    let known = ranges(module, &steps);
+    Pipeline::HardwareSpeed.run(module, &settings);
+    ranges_given(module, &known, &steps)
 }
 
 impl VerilogRequest {

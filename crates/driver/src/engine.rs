@@ -8,9 +8,9 @@ use iecc_diag::{Code, Diagnostic};
 use iecc_interp::Interpreter;
 use iecc_ir::{Module, Verified, verify};
 use iecc_jit::Jit;
-use iecc_passes::{Settings, ranges};
+use iecc_passes::Settings;
 use iecc_target::Engine;
-use iecc_verilog::{Clock, Options, max_step};
+use iecc_verilog::{Clock, Options};
 
 /// What executes the scans.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +50,7 @@ impl EngineKind {
 fn simulate(module: &Module, period_ns: u64) -> Result<Box<dyn Engine>, Vec<Diagnostic>> {
     let mut module = module.clone();
     let clock = Clock::period_ns(period_ns.max(1)).expect("a period of at least 1 ns");
-    hardware_passes(&mut module, clock);
+    let ranges = hardware_passes(&mut module, clock);
     let cannot = |error: SimError| match error {
         SimError::Refused(errors) => refusal::to_diagnostics(&module, &errors),
         SimError::Compile(text) => panic!("the simulator refuses the module:\n{text}"),
@@ -59,7 +59,7 @@ fn simulate(module: &Module, period_ns: u64) -> Result<Box<dyn Engine>, Vec<Diag
         }
     };
     let options = Options {
-        ranges: ranges(&module, &|unit_ns| max_step(clock, unit_ns)),
+        ranges,
         ..Options::new(clock)
     };
     match VerilogSim::start(verified(&module), &options, period_ns) {

@@ -1,7 +1,7 @@
 //! Pipelines of passes, and the text of a module after any of them.
 
 use iecc_ir::{Module, print_module};
-use iecc_passes::{HARDWARE, PASSES, SOFTWARE, Settings, run_pipeline};
+use iecc_passes::{HARDWARE, HARDWARE_SPEED, PASSES, SOFTWARE, Settings, run_pipeline};
 use std::fmt;
 
 /// A list of passes.
@@ -9,6 +9,8 @@ use std::fmt;
 pub enum Pipeline {
     /// For targets that are hardware.
     Hardware,
+    /// For hardware, after that: keeps more state to be faster.
+    HardwareSpeed,
     /// For engines that run instructions one after the other.
     Software,
 }
@@ -18,6 +20,7 @@ impl Pipeline {
     pub fn passes(self) -> &'static [&'static str] {
         match self {
             Self::Hardware => HARDWARE,
+            Self::HardwareSpeed => HARDWARE_SPEED,
             Self::Software => SOFTWARE,
         }
     }

@@ -24,7 +24,7 @@ const FAR: u32 = 4;
 /// How many facts a case follows before it stops learning.
 const FACTS: usize = 64;
 /// How many ranges one question may compute, in all the cases it splits into.
-pub(super) const WORK: u32 = 8_000;
+pub(super) const WORK: u32 = 2_000;
 
 /// Facts that hold together. `None` from a method means they contradict each other: the case
 /// cannot happen.
@@ -71,9 +71,19 @@ impl<'a, 'm> Case<'a, 'm> {
     pub(super) fn assume(&mut self, value: Value, range: Range) -> Option<()> {
         self.distance = 0;
         self.learn(value, range)?;
-        // New facts may decide earlier ones; a few rounds settle it, more would only be sharper.
+        // Looking at operands for a fact is no place to split the case.
+        let splits = std::mem::replace(&mut self.splits, SPLITS);
+        let possible = self.follow_all();
+        self.splits = splits;
+        self.computed.clear();
+        possible
+    }
+
+    /// New facts may decide earlier ones; a few rounds settle it, more would only be sharper.
+    fn follow_all(&mut self) -> Option<()> {
         for _ in 0..4 {
             let before = self.assumed.len();
+            self.computed.clear();
             for index in 0..self.assumed.len() {
                 let (value, distance) = self.assumed[index];
                 self.distance = distance + 1;
@@ -109,7 +119,6 @@ impl<'a, 'm> Case<'a, 'm> {
         let narrowed = known.intersection(range)?;
         if narrowed != known {
             self.facts.insert(value, narrowed);
-            self.computed.clear();
             if self.assumed.len() < FACTS && self.distance <= FAR {
                 self.assumed.push((value, self.distance));
             }
@@ -375,12 +384,14 @@ impl<'a, 'm> Case<'a, 'm> {
             Some(_) => return self.range(args[1], depth),
             None => {}
         }
+        if self.splits == SPLITS {
+            let (yes, no) = (self.range(args[0], depth)?, self.range(args[1], depth)?);
+            return Some(yes.union(no));
+        }
         let arms = [(args[0], true), (args[1], false)].map(|(arm, taken)| {
             let mut case = self.clone();
             case.splits += 1;
-            if case.splits <= SPLITS {
-                case.assume(cond, Range::constant(i64::from(taken)))?;
-            }
+            case.assume(cond, Range::constant(i64::from(taken)))?;
             case.range(arm, depth)
         });
         match arms {
