@@ -68,13 +68,22 @@ enum Step {
     Set(i64),
 }
 
-/// The selects that choose the next value.
+/// What a value of the counter is made from.
+#[derive(Debug, Clone, Copy)]
+enum Node {
+    /// One of two, by a condition.
+    Select(Value, [Value; 2]),
+    /// One more than another.
+    Sum(Value),
+}
+
+/// How the next value is made.
 #[derive(Debug)]
 struct Choices {
     next: Value,
-    /// Selects, operands before users: result, condition, arms.
-    selects: Vec<(Value, Value, [Value; 2])>,
-    /// What stands at the ends of the selects.
+    /// Selects and sums, operands before users.
+    nodes: Vec<(Value, Node)>,
+    /// What stands at their ends.
     ends: BTreeMap<Value, Step>,
     conditions: BTreeSet<Value>,
 }
@@ -116,13 +125,11 @@ impl Observation {
 struct Counter {
     leaf: usize,
     load: Value,
-    /// `load + 1`, all such values.
-    sums: BTreeSet<Value>,
     choices: Choices,
     /// Comparisons that come out alike for everything from `top` on.
     low: BTreeMap<Value, Observation>,
-    /// Comparisons of the counter with the largest number of its type, and whether they are `==`.
-    at_max: BTreeMap<Value, bool>,
+    /// Comparisons with the largest number of the type: `==` or `!=`, and of what.
+    at_max: BTreeMap<Value, Observation>,
     /// Where the counter may stop.
     top: i64,
     max: i64,
@@ -139,11 +146,9 @@ impl Counter {
         }
         let max = (data.ty.mask() >> 1) as i64;
         let choices = Choices::of(func, load, next)?;
-        let sums = sums(func, load);
         let mut counter = Self {
             leaf,
             load,
-            sums,
             choices,
             low: BTreeMap::new(),
             at_max: BTreeMap::new(),
@@ -151,28 +156,38 @@ impl Counter {
             max,
         };
         counter.observe(func, form)?;
-        let sets = counter.choices.ends.values().filter_map(|end| match end {
-            Step::Set(k) => Some(*k),
-            Step::Keep | Step::Count => None,
-        });
+        let ways: Vec<Way> = counter.choices.ways().flatten().collect();
+        let sets = ways
+            .iter()
+            .flat_map(|way| way.steps.values())
+            .filter_map(|step| match step {
+                Step::Set(k) => Some(*k),
+                Step::Keep | Step::Count => None,
+            });
         counter.top = counter
             .top
             .max(sets.max().unwrap_or(0))
             .max(data.ty.signed(data.init));
+        let counts = ways.iter().any(|way| way.next == Step::Count);
         // Half the bits must go, or it is not worth a comparison.
         let worth = counter.top < 1 << (data.ty.bits() / 2);
-        (worth && !counter.sums.is_empty()).then_some(counter)
+        (worth && counts).then_some(counter)
     }
 
     /// Constants at the ends are shared with others; they do not stand for the counter.
     fn is_counter_value(&self, value: Value) -> bool {
-        value == self.load
-            || self.sums.contains(&value)
-            || self
-                .choices
-                .selects
-                .iter()
-                .any(|(select, ..)| *select == value)
+        value == self.load || self.choices.nodes.iter().any(|(node, _)| *node == value)
+    }
+
+    /// What a sum adds one to.
+    fn summand(&self, value: Value) -> Option<Value> {
+        self.choices
+            .nodes
+            .iter()
+            .find_map(|(node, kind)| match kind {
+                Node::Sum(of) if *node == value => Some(*of),
+                Node::Sum(_) | Node::Select(..) => None,
+            })
     }
 
     /// Collects every use of the counter's values; `None` if one is no comparison with a constant.
@@ -214,8 +229,14 @@ impl Counter {
             _ => return None,
         };
         let k = func.value_type(of).signed(k);
-        if of == self.load && k == self.max && matches!(op, CompareOp::Eq | CompareOp::Ne) {
-            self.at_max.insert(result, op == CompareOp::Eq);
+        let may_be_at_max = |way: Option<Way>| {
+            way.is_some_and(|way| way.steps.get(&of).copied().unwrap_or(Step::Keep) != Step::Count)
+        };
+        if k == self.max
+            && matches!(op, CompareOp::Eq | CompareOp::Ne)
+            && self.choices.ways().all(may_be_at_max)
+        {
+            self.at_max.insert(result, Observation { op, of, k });
             return Some(());
         }
         // From here on the outcome does not change any more.
@@ -231,11 +252,11 @@ impl Counter {
 }
 
 impl Choices {
-    /// `None` if something else than keeping, counting and setting stands at an end.
+    /// `None` if something else than keeping, setting and counting once is on a way.
     fn of(func: &Function, load: Value, next: Value) -> Option<Self> {
         let mut choices = Self {
             next,
-            selects: Vec::new(),
+            nodes: Vec::new(),
             ends: BTreeMap::new(),
             conditions: BTreeSet::new(),
         };
@@ -244,15 +265,17 @@ impl Choices {
             if !seen.insert(value) {
                 continue;
             }
-            match func.def_inst(value) {
-                Some(InstData::Select { cond, args }) => {
-                    choices.selects.push((value, *cond, *args));
-                    choices.conditions.insert(*cond);
-                    open.extend(args);
+            if let Some(node) = node(func, value) {
+                choices.nodes.push((value, node));
+                match node {
+                    Node::Select(condition, args) => {
+                        choices.conditions.insert(condition);
+                        open.extend(args);
+                    }
+                    Node::Sum(of) => open.push(of),
                 }
-                _ => {
-                    choices.ends.insert(value, end(func, load, value)?);
-                }
+            } else {
+                choices.ends.insert(value, end(func, load, value)?);
             }
             if choices.conditions.len() > MAX_CONDITIONS {
                 return None;
@@ -265,34 +288,66 @@ impl Choices {
             .enumerate();
         let position: BTreeMap<Value, usize> =
             order.map(|(index, &value)| (value, index)).collect();
-        choices.selects.sort_by_key(|(select, ..)| position[select]);
+        choices.nodes.sort_by_key(|(value, _)| position[value]);
+        choices
+            .ways()
+            .map(|way| way.map(drop))
+            .collect::<Option<()>>()?;
         Some(choices)
     }
 
-    fn ways(&self) -> impl Iterator<Item = Way> + '_ {
+    /// Every way through the conditions; `None` for one that counts twice.
+    fn ways(&self) -> impl Iterator<Item = Option<Way>> + '_ {
         (0..1u32 << self.conditions.len()).map(|bits| {
             let numbered = self.conditions.iter().enumerate();
-            let conditions: BTreeMap<Value, bool> = numbered
-                .map(|(index, &condition)| (condition, bits >> index & 1 == 1))
-                .collect();
-            let mut steps = self.ends.clone();
-            for (select, condition, [yes, no]) in &self.selects {
-                let taken = if conditions[condition] { yes } else { no };
-                steps.insert(*select, steps[taken]);
-            }
-            Way {
-                next: steps[&self.next],
-                conditions,
-                steps,
-            }
+            let conditions =
+                numbered.map(|(index, &condition)| (condition, bits >> index & 1 == 1));
+            self.way(conditions.collect())
         })
+    }
+
+    fn way(&self, conditions: BTreeMap<Value, bool>) -> Option<Way> {
+        let mut steps = self.ends.clone();
+        for (value, node) in &self.nodes {
+            let step = match node {
+                Node::Select(condition, [yes, no]) => {
+                    steps[if conditions[condition] { yes } else { no }]
+                }
+                Node::Sum(of) => match steps[of] {
+                    Step::Keep => Step::Count,
+                    Step::Set(k) => Step::Set(k.checked_add(1)?),
+                    // Taken or not, a sum of a sum is no counter that counts by one.
+                    Step::Count => return None,
+                },
+            };
+            steps.insert(*value, step);
+        }
+        Some(Way {
+            next: steps[&self.next],
+            conditions,
+            steps,
+        })
+    }
+}
+
+fn node(func: &Function, value: Value) -> Option<Node> {
+    match func.def_inst(value)? {
+        InstData::Select { cond, args } => Some(Node::Select(*cond, *args)),
+        InstData::Binary {
+            op: BinaryOp::Add,
+            args: [a, b],
+        } => match (func.constant(*a), func.constant(*b)) {
+            (Some(1), None) => Some(Node::Sum(*b)),
+            (None, Some(1)) => Some(Node::Sum(*a)),
+            _ => None,
+        },
+        _ => None,
     }
 }
 
 fn end(func: &Function, load: Value, value: Value) -> Option<Step> {
     match func.def_inst(value) {
         _ if value == load => Some(Step::Keep),
-        _ if is_sum(func, load, value) => Some(Step::Count),
         Some(InstData::Const { ty, bits }) if ty.signed(*bits) >= 0 => {
             Some(Step::Set(ty.signed(*bits)))
         }
@@ -300,26 +355,7 @@ fn end(func: &Function, load: Value, value: Value) -> Option<Step> {
     }
 }
 
-fn is_sum(func: &Function, load: Value, value: Value) -> bool {
-    match func.def_inst(value) {
-        Some(InstData::Binary {
-            op: BinaryOp::Add,
-            args,
-        }) => args.contains(&load) && args.iter().any(|&arg| func.constant(arg) == Some(1)),
-        _ => false,
-    }
-}
-
-fn sums(func: &Function, load: Value) -> BTreeSet<Value> {
-    let block = func.block(func.entry());
-    let results = block
-        .insts
-        .iter()
-        .flat_map(|&inst| func.results_of(inst).iter().copied());
-    results.filter(|&value| is_sum(func, load, value)).collect()
-}
-
-/// Lets the counter stop: `load + 1` becomes `load == top ? load : load + 1`, and it is never at the
+/// Lets the counter stop: `x + 1` becomes `x >= top ? x : x + 1`, and it is never at the
 /// largest number.
 fn apply(func: &mut Function, form: &ScanForm, counter: &Counter) {
     let (mut editor, insts) = BlockEditor::new(func, form.block);
@@ -329,17 +365,25 @@ fn apply(func: &mut Function, form: &ScanForm, counter: &Counter) {
         editor.set_origin(editor.func.origin(inst));
         match value {
             Some(value) if counter.at_max.contains_key(&value) => {
-                let bits = u64::from(!counter.at_max[&value]);
-                *editor.func.inst_mut(inst) = InstData::Const { ty: Type::I1, bits };
+                let never = counter.at_max[&value].outcome(0);
+                let data = InstData::Const {
+                    ty: Type::I1,
+                    bits: u64::from(never),
+                };
+                *editor.func.inst_mut(inst) = data;
                 editor.keep(inst);
             }
-            Some(value) if counter.sums.contains(&value) => {
+            Some(value) if counter.summand(value).is_some() => {
+                let of = counter.summand(value).expect("just seen");
                 editor.keep(inst);
-                let stop = editor.compare_constant(CompareOp::Sge, counter.load, counter.top);
-                let args = [counter.load, value];
+                let stop = editor.compare_constant(CompareOp::Sge, of, counter.top);
+                let ty = editor.func.value_type(value);
                 let bounded = editor.value(
-                    InstData::Select { cond: stop, args },
-                    editor.func.value_type(value),
+                    InstData::Select {
+                        cond: stop,
+                        args: [of, value],
+                    },
+                    ty,
                 );
                 stopped.insert(value, bounded);
             }

@@ -13,7 +13,7 @@
 //! `i1` of the block is computed for both programs, as 0, 1 or open, together with whether both
 //! have the same. Comparisons below `top` are decided by it.
 
-use super::{Counter, Step, Way};
+use super::{Counter, Observation, Step, Way};
 use crate::scan_form::ScanForm;
 use iecc_ir::{BinaryOp, Function, InstData, Root, Type, UnaryOp, Value};
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ pub(super) fn is_invisible(
     counter: &Counter,
     flag: usize,
 ) -> bool {
-    counter.choices.ways().all(|way| {
+    counter.choices.ways().flatten().all(|way| {
         [Situation::Wrapped, Situation::AtMax, Situation::Below]
             .into_iter()
             .all(|situation| holds(func, form, counter, flag, &way, situation))
@@ -185,11 +185,11 @@ impl Case<'_> {
                 false,
             );
         }
-        if value == self.counter.load || self.counter.sums.contains(&value) {
+        if self.counter.is_counter_value(value) {
             return Pair::DIFFERENT;
         }
-        if let Some(&is_equal) = self.counter.at_max.get(&value) {
-            return self.at_max(is_equal);
+        if let Some(&observation) = self.counter.at_max.get(&value) {
+            return self.at_max(observation);
         }
         if self.counter.low.contains_key(&value) {
             return self.low(value);
@@ -197,14 +197,27 @@ impl Case<'_> {
         self.gate(data, value)
     }
 
-    /// `X == MAX`; Y never is.
-    fn at_max(&self, is_equal: bool) -> Pair {
+    /// What is compared on this way.
+    fn step(&self, observation: Observation) -> Step {
+        self.way
+            .steps
+            .get(&observation.of)
+            .copied()
+            .unwrap_or(Step::Keep)
+    }
+
+    /// `X == MAX` or its opposite; Y never is.
+    fn at_max(&self, observation: Observation) -> Pair {
+        let below = observation.outcome(0);
+        if let Step::Set(k) = self.step(observation) {
+            return Pair::known(observation.outcome(k));
+        }
         let old = match self.situation {
             Situation::Wrapped => None,
-            Situation::AtMax => Some(is_equal),
-            Situation::Below => Some(!is_equal),
+            Situation::AtMax => Some(!below),
+            Situation::Below => Some(below),
         };
-        Pair::of(old, Some(!is_equal), false)
+        Pair::of(old, Some(below), false)
     }
 
     /// A comparison that is settled from `top` on.
@@ -212,12 +225,7 @@ impl Case<'_> {
         let observation = self.counter.low[&value];
         let settled = observation.outcome(self.counter.top);
         let wrapped = observation.outcome(-self.counter.max - 1);
-        // What is compared: the counter, one more, or what chooses the next value.
-        let step = match self.way.steps.get(&observation.of) {
-            Some(step) => *step,
-            None if self.counter.sums.contains(&observation.of) => Step::Count,
-            None => Step::Keep,
-        };
+        let step = self.step(observation);
         match (self.situation, step) {
             (_, Step::Set(k)) => Pair::known(observation.outcome(k)),
             (Situation::Below, _) => Pair::OPEN,
