@@ -363,7 +363,7 @@ fn time_is_exact_at_every_period() {
 }
 
 #[test]
-fn the_testbench_replays_a_stimulus_and_inputs_take_three_edges() {
+fn the_testbench_gives_each_scan_its_row_and_inputs_take_three_edges() {
     let module = parse_module(
         "module wire\nstate { }\ninput { a: i1, in: i8 }\noutput { b: i1, row: i8 }\nscan @scan\n\n\
          fn @scan[]() -> () {\nb0:\n  v0: i1 = load input.a\n  store output.b, v0\n  \
@@ -374,8 +374,8 @@ fn the_testbench_replays_a_stimulus_and_inputs_take_three_edges() {
     let mut options = Options::new(Clock::hertz(50_000_000).unwrap());
     options.stimulus = vec![vec![0, 0], vec![1, 5], vec![0, 0xff]];
     build(&module, &options, folder.path());
-    let replay = |clocks: &str| {
-        let parameter = format!("-Pwire__tb.CLOCKS={clocks}");
+    let replay = |latency: &str| {
+        let parameter = format!("-Pwire__tb.LATENCY={latency}");
         let files = [
             "-g2005",
             &parameter,
@@ -393,7 +393,7 @@ fn the_testbench_replays_a_stimulus_and_inputs_take_three_edges() {
         replay("3"),
         "row,a,in,b,row\n0,0,0,0,0\n1,1,5,1,5\n2,0,-1,0,-1\n"
     );
-    // After two edges the row before is still to be seen.
+    // With two edges the row before is still to be seen.
     assert_eq!(
         replay("2"),
         "row,a,in,b,row\n0,0,0,0,0\n1,1,5,0,0\n2,0,-1,1,5\n"

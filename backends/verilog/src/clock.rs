@@ -34,6 +34,12 @@ impl Clock {
         Self::new(NS_PER_SECOND, period_ns)
     }
 
+    /// The period, if it is a whole number of nanoseconds.
+    pub fn whole_period_ns(self) -> Option<u64> {
+        let (period, unit) = self.period_in(1);
+        u64::try_from(period).ok().filter(|_| unit == 1)
+    }
+
     /// The period over a unit, in lowest terms.
     fn period_in(self, unit_ns: u64) -> (u128, u128) {
         assert!(unit_ns > 0, "verified units are at least 1 ns");

@@ -29,6 +29,7 @@ mod scan;
 
 pub use board::{Board, PinFileError};
 pub use clock::{Clock, max_step};
+pub use names::place_text;
 pub use options::Options;
 
 use design::{Design, design};

@@ -54,7 +54,7 @@ pub(crate) fn identifier(name: &str) -> String {
 }
 
 /// The name of a place as a user reads it: `tonp1.ACC`, `recipe[3].time`, `word.5`.
-pub(crate) fn place_text(module: &Module, place: &Place) -> String {
+pub fn place_text(module: &Module, place: &Place) -> String {
     let region = match place.root {
         Root::State => module.state,
         Root::Input => module.input,

@@ -27,7 +27,7 @@ pub struct Options {
     pub reasons: BTreeMap<Place, String>,
     /// Source text and comments to print above what they became.
     pub source_comments: BTreeMap<Origin, String>,
-    /// Bytes of the input region for each row the testbench replays.
+    /// Bytes of the input region for each scan the testbench replays.
     pub stimulus: Vec<Vec<u8>>,
 }
 

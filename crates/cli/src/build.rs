@@ -1,11 +1,11 @@
 //! `iecc build`: a program as files of a target.
 
 use crate::messages::Messages;
-use crate::program::Program;
+use crate::program::{Program, load_stimulus};
 use crate::terminal;
 use clap::ValueEnum;
 use iecc_driver::run::parse_duration;
-use iecc_driver::{VerilogRequest, build_verilog, load, write_artifacts};
+use iecc_driver::{Replay, VerilogRequest, build_verilog, load, write_artifacts};
 use std::path::PathBuf;
 
 /// Make hardware of a program
@@ -39,6 +39,16 @@ pub(crate) struct Arguments {
     /// Which port is on which pin of the board
     #[arg(long, value_name = "FILE", requires = "board")]
     pins: Option<PathBuf>,
+
+    /// What the testbench sets the inputs to, and when: a CSV file as for `iecc run`; scans are one
+    /// period of the clock apart
+    #[arg(long, value_name = "FILE", requires = "scans")]
+    stimulus: Option<PathBuf>,
+
+    /// How many scans the testbench runs with the stimulus
+    #[arg(long, value_name = "N", requires = "stimulus",
+          value_parser = clap::value_parser!(u64).range(1..))]
+    scans: Option<u64>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -63,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
         return;
     };
     let made = match arguments.target {
-        TargetChoice::Verilog => build_verilog(module, &request),
+        TargetChoice::Verilog => build_verilog(module, &request, &messages.map),
     };
     let written = made.and_then(|files| {
         write_artifacts(&arguments.output, &files).map_err(|diagnostic| vec![diagnostic])
@@ -92,6 +102,13 @@ impl Arguments {
             tick_ns: self.tick_ns,
             board: self.board.clone(),
             pins,
+            replay: match (&self.stimulus, self.scans) {
+                (Some(path), Some(scans)) => Some(Replay {
+                    stimulus: load_stimulus(path, messages)?,
+                    scans,
+                }),
+                (Some(_) | None, _) => None,
+            },
         })
     }
 }

@@ -1,11 +1,11 @@
-//! What every command that reads a program has in common: the file and how to take it.
+//! What commands that read a program have in common: the file, how to take it, and the stimulus.
 
 use crate::messages::Messages;
 use clap::ValueEnum;
-use iecc_driver::run::parse_duration;
-use iecc_driver::{Edits, FrontOptions, Init, TimerBase};
+use iecc_driver::run::{Stimulus, parse_duration};
+use iecc_driver::{Edits, FrontOptions, Init, TimerBase, load};
 use iecc_ir::Module;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The program and choices it does not make.
 #[derive(Debug, clap::Args)]
@@ -89,7 +89,14 @@ impl Program {
     /// Reads the program and compiles it to a module ready for its first scan.
     pub(crate) fn compile(&self, messages: &mut Messages) -> Option<Module> {
         let (map, diagnostics) = (&mut messages.map, &mut messages.diagnostics);
-        let file = iecc_driver::load(map, &self.file, diagnostics)?;
+        let file = load(map, &self.file, diagnostics)?;
         iecc_driver::compile(map, file, &self.options(), diagnostics)
     }
+}
+
+/// Reads a stimulus; `None` after mistakes.
+pub(crate) fn load_stimulus(path: &Path, messages: &mut Messages) -> Option<Stimulus> {
+    let file = load(&mut messages.map, path, &mut messages.diagnostics)?;
+    let text = messages.map.file(file).text();
+    Stimulus::parse(file, text, &mut messages.diagnostics)
 }

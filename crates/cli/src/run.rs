@@ -1,11 +1,11 @@
 //! `iecc run`: scans on an engine, with a stimulus, into traces.
 
 use crate::messages::Messages;
-use crate::program::Program;
+use crate::program::{Program, load_stimulus};
 use clap::ValueEnum;
 use iecc_diag::Diagnostic;
-use iecc_driver::run::{Request, Schedule, Session, Stimulus, Trace, TraceFile, parse_duration};
-use iecc_driver::{EngineKind, load};
+use iecc_driver::EngineKind;
+use iecc_driver::run::{Request, Schedule, Session, Trace, TraceFile, parse_duration};
 use iecc_ir::Module;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal};
@@ -90,11 +90,7 @@ impl Arguments {
     fn prepare(&self, mut module: Module, messages: &mut Messages) -> Option<(Module, Session)> {
         let stimulus = match &self.stimulus {
             None => None,
-            Some(path) => {
-                let file = load(&mut messages.map, path, &mut messages.diagnostics)?;
-                let text = messages.map.file(file).text();
-                Some(Stimulus::parse(file, text, &mut messages.diagnostics)?)
-            }
+            Some(path) => Some(load_stimulus(path, messages)?),
         };
         let request = Request {
             watches: &self.watch,

@@ -4,6 +4,8 @@
 //! through the functions here, so there is one pipeline and no second, laxer path.
 
 mod build;
+mod comments;
+mod constants;
 mod engine;
 mod explain;
 mod front;
@@ -13,7 +15,7 @@ mod refusal;
 pub mod run;
 pub mod sim;
 
-pub use build::{VerilogRequest, build_verilog};
+pub use build::{Replay, VerilogRequest, build_verilog};
 pub use engine::EngineKind;
 pub use explain::{explain_instruction, list_instructions};
 pub use front::{FrontOptions, TimerBase, check, compile, load};

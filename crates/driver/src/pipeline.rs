@@ -30,7 +30,8 @@ impl Pipeline {
         self.run_part(module, self.passes().len(), settings);
     }
 
-    fn run_part(self, module: &mut Module, end: usize, settings: &Settings) {
+    /// Runs the first `end` passes.
+    pub(crate) fn run_part(self, module: &mut Module, end: usize, settings: &Settings) {
         run_pipeline(module, &self.passes()[..end], settings, &mut |_, _| {})
             .expect("pipelines list passes that exist");
     }

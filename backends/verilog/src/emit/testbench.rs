@@ -1,8 +1,9 @@
 //! A testbench that replays a stimulus in any simulator.
 //!
-//! It reads `<name>_stimulus.hex`, one number a row that holds all inputs, applies a row for some
-//! clocks, and prints what the outputs are then: one comma-separated line a row after a line of
-//! names.
+//! It reads `<name>_stimulus.hex`, one number a row that holds all inputs, and gives each scan its
+//! row: the rows begin to go in during the reset, so that the first scan works with the first row
+//! although inputs pass through synchronisers. It prints a row and what the outputs are after its
+//! scan: one comma-separated line a row after a line of names.
 
 use super::module::ModuleText;
 use super::simulator::encode;
@@ -74,10 +75,10 @@ impl<'a> Bench<'a> {
         let name = &self.text.name;
         format!(
             "// Replays {name}_stimulus.hex and prints the ports after each row.\n\
-             // An input reaches an output in {latency} clock edges; a row is held for CLOCKS of them.\n\
+             // One row is one scan is one clock. An input reaches an output in LATENCY edges, so a row goes in\n\
+             // LATENCY - 1 clocks before its scan.\n\
              `timescale 1ns / 1ps\n\
              module {name}_tb;\n\n{declarations}\n{instance}\n{process}endmodule\n",
-            latency = self.latency,
             declarations = self.declarations(),
             instance = self.instance(),
             process = self.process(),
@@ -88,7 +89,7 @@ impl<'a> Bench<'a> {
         let total: u32 = self.inputs.iter().map(|(_, bits)| bits).sum();
         let top = total.max(1) - 1;
         let mut out = format!(
-            "    parameter ROWS = {};\n    parameter CLOCKS = {};\n\n    reg clk, rst;\n    \
+            "    parameter ROWS = {};\n    parameter LATENCY = {};\n\n    reg clk, rst;\n    \
              reg [{top}:0] {};\n    reg [{top}:0] {} [0:ROWS-1];\n    integer {};\n\n",
             self.rows, self.latency, self.all, self.memory, self.row
         );
@@ -120,13 +121,18 @@ impl<'a> Bench<'a> {
         let ports: Vec<&str> = self.text.ports().collect();
         let header: String = ports.iter().map(|port| format!(",{port}")).collect();
         let formats = ",%0d".repeat(ports.len());
-        let values: String = self
-            .inputs
-            .iter()
-            .chain(&self.outputs)
-            .map(|(port, bits)| match bits {
-                1 => format!(", {port}"),
-                _ => format!(", $signed({port})"),
+        let mut low = 0;
+        let inputs = self.inputs.iter().map(|&(_, bits)| {
+            low += bits;
+            let value = format!("{memory}[{row}][{}:{}]", low - 1, low - bits);
+            (value, bits)
+        });
+        let outputs = self.outputs.iter();
+        let values: String = inputs
+            .chain(outputs.map(|&(port, bits)| (port.to_owned(), bits)))
+            .map(|(value, bits)| match bits {
+                1 => format!(", {value}"),
+                _ => format!(", $signed({value})"),
             })
             .collect();
         let name = &self.text.name;
@@ -135,10 +141,13 @@ impl<'a> Bench<'a> {
              $readmemh(\"{name}_stimulus.hex\", {memory});\n        \
              if ($test$plusargs(\"vcd\")) begin\n            $dumpfile(\"{name}.vcd\");\n            \
              $dumpvars;\n        end\n        clk = 0;\n        rst = 1;\n        \
-             {all} = {memory}[0];\n        repeat (4) @(negedge clk);\n        rst = 0;\n        \
+             {all} = {memory}[0];\n        repeat (4) @(negedge clk);\n        \
              $display(\"row{header}\");\n        \
-             for ({row} = 0; {row} < ROWS; {row} = {row} + 1) begin\n            \
-             {all} = {memory}[{row}];\n            repeat (CLOCKS) @(negedge clk);\n            \
+             for ({row} = 1 - LATENCY; {row} < ROWS; {row} = {row} + 1) begin\n            \
+             rst = {row} < 0;\n            \
+             {all} = {memory}[{row} + LATENCY <= ROWS ? {row} + LATENCY - 1 : ROWS - 1];\n            \
+             @(negedge clk);\n            \
+             if ({row} >= 0)\n                \
              $display(\"%0d{formats}\", {row}{values});\n        end\n        $finish(0);\n    end\n"
         )
     }

@@ -196,6 +196,28 @@ impl Session {
         }
     }
 
+    /// The input region before each scan of a schedule, for hardware: the module stays as it is, so
+    /// only inputs can be set. `None` after mistakes.
+    pub fn replay(
+        module: &Module,
+        stimulus: &Stimulus,
+        schedule: Schedule,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Vec<Vec<u8>>> {
+        let bound = stimulus.bind_inputs(module, diagnostics)?;
+        let unchanged = Instruments {
+            watches: Vec::new(),
+            pokes: Vec::new(),
+        };
+        let session = Self::new(module, Vec::new(), bound, &unchanged);
+        let (mut inputs, mut rows) = (session.inputs.clone(), session.rows.as_slice());
+        let scans = (0..schedule.scans()).map(|scan| {
+            session.apply(&mut rows, schedule.time_ns(scan), &mut inputs);
+            inputs.clone()
+        });
+        Some(scans.collect())
+    }
+
     /// The columns of a trace: inputs, outputs, then what is watched.
     pub fn columns(&self) -> &[Column] {
         &self.columns

@@ -16,14 +16,14 @@ use std::collections::BTreeMap;
 const MAX_MESSAGES: usize = 20;
 
 /// One row: at which time which cells count.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 struct Row {
     time_ns: u64,
     cells: Vec<Cell>,
 }
 
 /// A stimulus as written.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Stimulus {
     columns: Vec<Cell>,
     rows: Vec<Row>,
@@ -105,6 +105,30 @@ impl Stimulus {
         let faultless = !found.has_errors();
         diagnostics.append(found);
         bound.columns = columns.into_iter().flatten().collect();
+        faultless.then_some(bound)
+    }
+
+    /// The same for what sets inputs only; a column that pokes a tag is a mistake (E6012).
+    pub(super) fn bind_inputs(
+        &self,
+        module: &Module,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<BoundStimulus> {
+        let bound = self.bind(module, diagnostics)?;
+        let mut faultless = true;
+        for (cell, column) in self.columns.iter().zip(&bound.columns) {
+            match column.setting {
+                Setting::Input(_) => {}
+                Setting::Poke(_) => {
+                    let message = format!(
+                        "`{}` is no input, and a testbench reaches hardware through its inputs only",
+                        cell.text
+                    );
+                    diagnostics.push(Diagnostic::new(Code::E6012, cell.span, message));
+                    faultless = false;
+                }
+            }
+        }
         faultless.then_some(bound)
     }
 }
