@@ -6,7 +6,10 @@
 
 use iecc_diag::Diagnostics;
 use iecc_driver::run::{CsvTrace, Request, Schedule, Session, Stimulus};
-use iecc_driver::{EngineKind, FrontOptions, Init, TimerBase, compile, load};
+use iecc_driver::{
+    EngineKind, FrontOptions, Init, Replay, TimerBase, VerilogRequest, build_verilog, compile,
+    load, write_artifacts,
+};
 use iecc_ir::Module;
 use iecc_source::SourceMap;
 use std::fs;
@@ -75,6 +78,89 @@ fn the_ald_trace_is_the_expected_one_on_every_engine() {
             assert_eq!(trace, text_of("ald/expected.csv"), "{engine:?} {init:?}");
         }
     }
+}
+
+/// The ALD example as hardware for a clock of 1 ms, with a testbench for its stimulus.
+fn build_ald(folder: &Path) {
+    let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
+    let mut load = |path| load(&mut map, &example(path), &mut diagnostics).expect("it is there");
+    let (file, csv) = (load("ald/ald.L5X"), load("ald/stimulus.csv"));
+    let module = compile(&map, file, &FrontOptions::default(), &mut diagnostics);
+    let stimulus = Stimulus::parse(csv, map.file(csv).text(), &mut diagnostics);
+    let request = VerilogRequest {
+        clock_hz: Some(1_000),
+        replay: Some(Replay {
+            stimulus: stimulus.expect("no errors"),
+            scans: 2101,
+        }),
+        ..VerilogRequest::default()
+    };
+    let files = build_verilog(module.expect("no errors"), &request, &map).expect("no refusal");
+    write_artifacts(folder, &files).expect("written");
+}
+
+/// What a program says; it must be there and succeed.
+fn said(folder: &Path, program: &str, arguments: &[&str]) -> String {
+    let output = Command::new(program)
+        .args(arguments)
+        .current_dir(folder)
+        .output();
+    let output = output.unwrap_or_else(|e| panic!("{program}: {e}; `scripts/test` installs it"));
+    assert!(output.status.success(), "{program}: {output:?}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// The testbench works through the synchronisers of the real inputs, and still scan for scan: its
+/// rows number the scans, which are the milliseconds.
+#[test]
+fn the_testbench_of_the_ald_gives_the_expected_trace() {
+    let folder = tempfile::tempdir().expect("a folder");
+    build_ald(folder.path());
+    let name = "ALD_Reactor";
+    let [bench, design] = [format!("{name}_tb.v"), format!("{name}.v")];
+    let files = ["-g2005", "-o", "tb", &bench, &design, "iecc_tick.v"];
+    let needed = if folder.path().join("iecc_tick.v").exists() {
+        &files[..]
+    } else {
+        &files[..5]
+    };
+    said(folder.path(), "iverilog", needed);
+    let rows = said(folder.path(), "vvp", &["-n", "tb"]);
+    let mut changes = String::new();
+    let mut before = "";
+    for line in rows.lines() {
+        let (scan, values) = line.split_once(',').expect("columns");
+        if values != before {
+            changes += &format!("{},{values}\n", scan.replace("row", "t_ms"));
+        }
+        before = values;
+    }
+    assert_eq!(rows.lines().count(), 2102);
+    assert_eq!(changes, text_of("ald/expected.csv"));
+}
+
+/// The recipe's times are constants of the program, which it moves to the presets.
+#[test]
+fn the_report_of_the_ald_tells_its_constants_and_the_verilog_its_rungs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    build_ald(folder.path());
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("written");
+    let report = read("ALD_Reactor.report.txt");
+    for constant in [
+        "tpp1 = 20",
+        "tvent1.PRE = 60",
+        "tventw.PRE = 65",
+        "twait1.PRE = 1",
+    ] {
+        let line = format!("  {constant}");
+        assert!(
+            report.lines().any(|found| found == line),
+            "{constant}\n{report}"
+        );
+    }
+    assert!(!report.contains(".last"), "{report}");
+    let rung = "    // -- MainProgram/Supervise rung 1\n    //    XIC(StartPulse)RES(cycles);\n";
+    assert!(read("ALD_Reactor.v").contains(rung));
 }
 
 /// The experiment of the paper: the two waits of 1 ms get a base of 1 us, and a cycle of deposition

@@ -250,6 +250,51 @@ fn a_trace_that_cannot_be_written_leaves_nothing() {
 }
 
 #[test]
+fn build_refuses_a_stimulus_that_a_testbench_cannot_replay() {
+    let folder = TempDir::new().expect("a folder");
+    let write = |name: &str, text: &str| {
+        fs::write(folder.path().join(name), text).expect("written");
+    };
+    write("a.L5X", &export(TAGS, &["XIC(run)OTE(run);"]));
+    write("poke.csv", "t_ms,run\n0,1\n");
+    write("none.csv", "t_ms\n0\n");
+    let build = ["build", "--target", "verilog", "a.L5X", "-o", "out"];
+    for (stimulus, scans, clock_hz, message) in [
+        ("poke.csv", "5", "1000", "error[E6012]: `run` is no input"),
+        (
+            "none.csv",
+            "100001",
+            "1000",
+            "error[E7008]: the testbench is to replay 100001 scans",
+        ),
+        (
+            "none.csv",
+            "5",
+            "3",
+            "error[E7008]: a clock of 3 Hz has no period",
+        ),
+    ] {
+        let more = [
+            "--stimulus",
+            stimulus,
+            "--scans",
+            scans,
+            "--clock-hz",
+            clock_hz,
+        ];
+        let output = iecc(folder.path(), &[&build[..], &more].concat());
+        let said = String::from_utf8(output.stderr).expect("UTF-8");
+        assert!(said.starts_with(message), "{said}");
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(!folder.path().join("out").exists());
+    }
+    for half in [["--stimulus", "none.csv"], ["--scans", "5"]] {
+        let output = iecc(folder.path(), &[&build[..], &half].concat());
+        assert_eq!(output.status.code(), Some(2));
+    }
+}
+
+#[test]
 fn build_says_which_files_it_wrote_and_an_unknown_board_writes_none() {
     let folder = TempDir::new().expect("a folder");
     fs::write(

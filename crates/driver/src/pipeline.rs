@@ -3,6 +3,7 @@
 use iecc_ir::{Module, print_module};
 use iecc_passes::{HARDWARE, HARDWARE_SPEED, PASSES, SOFTWARE, Settings, run_pipeline};
 use std::fmt;
+use std::ops::Range;
 
 /// A list of passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,12 +28,12 @@ impl Pipeline {
 
     /// Runs all of it.
     pub(crate) fn run(self, module: &mut Module, settings: &Settings) {
-        self.run_part(module, self.passes().len(), settings);
+        self.run_part(module, 0..self.passes().len(), settings);
     }
 
-    /// Runs the first `end` passes.
-    pub(crate) fn run_part(self, module: &mut Module, end: usize, settings: &Settings) {
-        run_pipeline(module, &self.passes()[..end], settings, &mut |_, _| {})
+    /// Runs some of its passes.
+    pub(crate) fn run_part(self, module: &mut Module, part: Range<usize>, settings: &Settings) {
+        run_pipeline(module, &self.passes()[part], settings, &mut |_, _| {})
             .expect("pipelines list passes that exist");
     }
 }
@@ -86,7 +87,7 @@ pub fn show(
                 after: after.clone(),
             })?,
         };
-        pipeline.run_part(&mut module, end, &Settings::default());
+        pipeline.run_part(&mut module, 0..end, &Settings::default());
     }
     Ok(print_module(&module))
 }
