@@ -21,6 +21,7 @@ mod fold;
 mod functions;
 mod if_convert;
 mod inline;
+mod late_clear;
 mod promote;
 mod range;
 mod range_fold;
@@ -138,6 +139,12 @@ pub const PASSES: &[Pass] = &[
         run: saturate::run,
     },
     Pass {
+        name: "late_clear",
+        what: "clears counters a scan later, by the flag that keeps their rung",
+        why_here: "after early_compare, whose bits are cleared with their counters",
+        run: late_clear::run,
+    },
+    Pass {
         name: "early_compare",
         what: "keeps `counter == constant` as a bit of its own, ready before it is needed",
         why_here: "last of all: its bits are more state",
@@ -188,11 +195,28 @@ pub const HARDWARE: &[&str] = &[
 
 /// For hardware, behind [`HARDWARE`]: makes the scan faster by keeping more state. What the state can
 /// hold is better found out before, because these bits hide why it holds.
-pub const HARDWARE_SPEED: &[&str] = &["early_compare", "fold", "cse", "state", "fold", "dce"];
+pub const HARDWARE_SPEED: &[&str] = &[
+    "early_compare",
+    "fold",
+    "cse",
+    "late_clear",
+    "fold",
+    "cse",
+    "state",
+    "fold",
+    "dce",
+];
 
 /// The passes after which the state at the end of a scan is no longer what the program says, in
 /// layout or in value: for targets that publish outputs only. All others keep it bit for bit.
-pub const CHANGE_STATE: &[&str] = &["split", "step_time", "state", "saturate", "early_compare"];
+pub const CHANGE_STATE: &[&str] = &[
+    "split",
+    "step_time",
+    "state",
+    "saturate",
+    "late_clear",
+    "early_compare",
+];
 
 /// There is no pass of this name.
 #[derive(Debug, Clone, PartialEq, Eq)]
