@@ -164,7 +164,7 @@ impl Project<'_> {
         format!(
             "#!/bin/sh\n# Makes {name}.bin with the open tools (yosys, nextpnr-ice40, icepack).\n\
              set -eu\ncd \"$(dirname \"$0\")\"\n\
-             yosys -q -p 'read_verilog {}; synth_ice40 -top {top} -json {name}.json'\n\
+             yosys -q -p 'read_verilog {}; synth_ice40 -abc9 -device hx -top {top} -json {name}.json'\n\
              nextpnr-ice40 --{device} --package {family} --json {name}.json --pcf {name}.pcf \\\n    \
              --asc {name}.asc --freq {megahertz}\n\
              icepack {name}.asc {name}.bin\n",
