@@ -5,13 +5,15 @@
 //! units) counts; a [`MappedText`] is text that was decoded from a file and knows the way
 //! back. Nothing here reads files: the text comes in as an argument.
 
+mod hash;
 mod line_index;
 mod mapped;
 mod span;
 
+pub use hash::{ContentHash, fold_hash};
 pub use line_index::{LineColumn, LineIndex, Utf16Position};
 pub use mapped::MappedText;
-pub use span::{FileId, Span, Spanned};
+pub use span::{FileId, Span, Spanned, TextRange};
 
 /// One source text and the name under which messages show it.
 #[derive(Debug, Clone)]

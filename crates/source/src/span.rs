@@ -57,6 +57,34 @@ impl Span {
     }
 }
 
+/// A byte range counted from some start that its owner knows, for example that of a program unit.
+/// It stays the same when text before that start changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct TextRange {
+    /// First byte.
+    pub start: u32,
+    /// One behind the last byte.
+    pub end: u32,
+}
+
+impl TextRange {
+    /// The range `start..end`.
+    pub fn new(start: u32, end: u32) -> Self {
+        debug_assert!(start <= end);
+        Self { start, end }
+    }
+
+    /// The smallest range that holds both.
+    pub fn to(self, other: TextRange) -> TextRange {
+        Self::new(self.start.min(other.start), self.end.max(other.end))
+    }
+
+    /// The span in a file, of a range that counts from `base`.
+    pub fn in_file(self, file: FileId, base: u32) -> Span {
+        Span::new(file, base + self.start, base + self.end)
+    }
+}
+
 /// Something together with the place where it is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Spanned<T> {
