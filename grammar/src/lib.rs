@@ -8,10 +8,11 @@
 mod rung;
 mod rung_actions;
 mod rung_lexer;
+pub mod st;
 
 pub use rung::{MAX_NESTING, MAX_OPERATORS, parse_rung};
 
-/// The generated parser of `rung.lalrpop`.
+/// The generated parsers of the `.lalrpop` files.
 mod generated {
     #![allow(
         clippy::all,
@@ -24,4 +25,5 @@ mod generated {
         reason = "generated code"
     )]
     lalrpop_util::lalrpop_mod!(pub rung);
+    lalrpop_util::lalrpop_mod!(pub st);
 }

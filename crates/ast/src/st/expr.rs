@@ -15,7 +15,7 @@ pub struct Ident {
     pub range: TextRange,
 }
 
-/// An expression where it stands. The range leaves out parentheses around the whole.
+/// An expression where it stands, with the parentheses around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expr {
     /// What it is.

@@ -14,6 +14,8 @@ pub struct Stmt {
     pub kind: StmtKind,
     /// Where.
     pub range: TextRange,
+    /// How deep statements nest: 1 without inner ones. At most [`super::MAX_BLOCK_DEPTH`].
+    pub depth: u16,
 }
 
 /// What a statement is.

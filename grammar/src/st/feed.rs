@@ -1,0 +1,186 @@
+//! What the parser gets to see of a fragment: its tokens without comments and pragmas, and with
+//! the damage of single tokens reported and mended.
+
+use super::lexer::Tokens;
+use super::slice::Fragment;
+use super::token::{Kind, Token};
+use iecc_ast::st::Pragma;
+use iecc_diag::{Code, Diagnostic, Diagnostics};
+use iecc_source::{Span, TextRange};
+
+/// A token between its first byte and the one behind its last, as the parser wants it.
+pub(crate) type Located = (u32, Token, u32);
+
+/// The tokens of a unit.
+pub(crate) struct Feed {
+    pub(crate) tokens: Vec<Located>,
+    pub(crate) pragmas: Vec<Pragma>,
+    /// Where tokens begin that stand behind something left out, in order.
+    pub(crate) holes: Vec<u32>,
+    /// Whether a comment without end has taken the end of the unit.
+    pub(crate) cut: bool,
+}
+
+/// Makes the tokens of a fragment fit for the parser.
+pub(crate) fn feed(
+    tokens: &Tokens<'_>,
+    fragment: &Fragment,
+    diagnostics: &mut Diagnostics,
+) -> Feed {
+    let list = &tokens.list[fragment.tokens.clone()];
+    let mut feeder = Feeder {
+        tokens,
+        base: fragment.start,
+        diagnostics,
+        hole: false,
+        feed: Feed {
+            tokens: Vec::with_capacity(list.len()),
+            pragmas: Vec::new(),
+            holes: Vec::new(),
+            cut: false,
+        },
+    };
+    list.iter().for_each(|&token| feeder.take(token));
+    feeder.feed
+}
+
+struct Feeder<'f, 't> {
+    tokens: &'f Tokens<'t>,
+    base: u32,
+    diagnostics: &'f mut Diagnostics,
+    /// Whether something was left out before the next token.
+    hole: bool,
+    feed: Feed,
+}
+
+impl Feeder<'_, '_> {
+    fn take(&mut self, mut token: Token) {
+        match token.kind {
+            Kind::Comment | Kind::Merged => return,
+            Kind::Pragma => return self.pragma(token),
+            Kind::OpenComment => return self.open_comment(token),
+            Kind::OpenPragma => return self.open_pragma(token),
+            Kind::Unknown => return self.unknown(token),
+            Kind::OpenString => {
+                self.open_string(token);
+                token.kind = Kind::String;
+            }
+            Kind::ForeignWord => {
+                self.foreign_word(token);
+                token.kind = Kind::Word;
+            }
+            Kind::BadNumber => self.bad_number(token),
+            _ => {}
+        }
+        if std::mem::take(&mut self.hole) {
+            self.feed.holes.push(token.start);
+        }
+        self.feed.tokens.push((token.start, token, token.end));
+    }
+
+    fn report(&mut self, code: Code, token: Token, message: impl Into<String>) -> &mut Self {
+        let diagnostic = Diagnostic::new(code, self.span(token.start, token.end), message);
+        self.diagnostics.push(diagnostic);
+        self
+    }
+
+    fn span(&self, start: u32, end: u32) -> Span {
+        Span::new(self.tokens.file, start, end)
+    }
+
+    fn pragma(&mut self, token: Token) {
+        let text = self.tokens.slice(token);
+        self.feed.pragmas.push(Pragma {
+            text: text[1..text.len() - 1].into(),
+            range: TextRange::new(token.start - self.base, token.end - self.base),
+        });
+    }
+
+    fn open_comment(&mut self, token: Token) {
+        let text = self.tokens.slice(token);
+        let (open, close) = if text.starts_with("(*") {
+            ("(*", "*)")
+        } else {
+            ("/*", "*/")
+        };
+        let opener = self.span(token.start, token.start + 2);
+        let diagnostic = Diagnostic::new(Code::E0016, opener, "the comment is not closed");
+        let inner = text[2..].find(open).filter(|_| text.ends_with(close));
+        let diagnostic = match inner {
+            Some(at) => {
+                let at = token.start + 2 + at as u32;
+                diagnostic
+                    .label(format!(
+                        "each comment in a comment needs a `{close}` of its own"
+                    ))
+                    .also(
+                        self.span(at, at + 2),
+                        "this begins a comment in the comment",
+                    )
+            }
+            None => {
+                self.feed.cut = true;
+                diagnostic.label(format!("expected `{close}` before the end of the file"))
+            }
+        };
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn open_pragma(&mut self, token: Token) {
+        let opener = self.span(token.start, token.start + 1);
+        let diagnostic = Diagnostic::new(Code::E0016, opener, "the pragma is not closed")
+            .label("expected `}`")
+            .fix("close the pragma", self.span(token.end, token.end), "}");
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Bytes that stand together get one message.
+    fn unknown(&mut self, token: Token) {
+        self.hole = true;
+        if let Some(last) = self.last_unknown()
+            && last.end == token.start
+        {
+            return;
+        }
+        let shown = self.tokens.slice(token).escape_debug().to_string();
+        let message = match shown.as_str() {
+            "*)" | "*/" => format!("`{shown}` ends a comment that was not begun"),
+            _ => format!("`{shown}` has no meaning here"),
+        };
+        self.report(Code::E0014, token, message);
+    }
+
+    fn last_unknown(&self) -> Option<Span> {
+        let last = self.diagnostics.iter().last()?;
+        let primary = last.primary.as_ref().filter(|_| last.code == Code::E0014)?;
+        Some(primary.span)
+    }
+
+    fn open_string(&mut self, token: Token) {
+        let quote = &self.tokens.slice(token)[..1];
+        let end = self.span(token.end, token.end);
+        let diagnostic = Diagnostic::new(
+            Code::E0015,
+            self.span(token.start, token.end),
+            "the string is not closed",
+        )
+        .label(format!("expected `{quote}` on the same line"))
+        .note("a line end in a string is written `$N`, a quote `$'` or `$\"`")
+        .fix("close the string", end, quote);
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn foreign_word(&mut self, token: Token) {
+        let text = self.tokens.slice(token);
+        let message = format!("the name `{text}` has letters outside ASCII");
+        self.report(Code::E0017, token, message);
+    }
+
+    fn bad_number(&mut self, token: Token) {
+        let text = self.tokens.slice(token);
+        let message = format!("`{text}` is neither a number nor a name");
+        let diagnostic = Diagnostic::new(Code::E0019, self.span(token.start, token.end), message)
+            .note("names begin with a letter or an underline; numbers of another base are written like `16#1F`");
+        self.diagnostics.push(diagnostic);
+    }
+}
