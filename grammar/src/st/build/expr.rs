@@ -16,14 +16,10 @@ impl Build<'_, '_> {
         self.node(kind, range, 1)
     }
 
-    /// A node whose only child is `Ref`'s operand.
-    pub(crate) fn parent(&mut self, start: u32, kind: ExprKind, end: u32) -> Id<Expr> {
-        let depth = match kind {
-            ExprKind::Ref(operand) => self.depth_above(operand),
-            _ => unreachable!("REF alone is made this way"),
-        };
+    pub(crate) fn reference(&mut self, start: u32, operand: Id<Expr>, end: u32) -> Id<Expr> {
         let range = self.range(start, end);
-        self.node(kind, range, depth)
+        let depth = self.depth_above(operand);
+        self.node(ExprKind::Ref(operand), range, depth)
     }
 
     fn node(&mut self, kind: ExprKind, range: TextRange, depth: u16) -> Id<Expr> {
@@ -99,12 +95,13 @@ impl Build<'_, '_> {
     /// The right operand of an operator that binds looser than `op`.
     fn looser_right(&self, expr: Id<Expr>, op: BinaryOp) -> Option<Id<Expr>> {
         let expr = &self.arena[expr];
-        match expr.kind {
-            ExprKind::Binary {
-                op: outer, right, ..
-            } if !expr.parenthesised && outer.binding() < op.binding() => Some(right),
-            _ => None,
-        }
+        let ExprKind::Binary {
+            op: outer, right, ..
+        } = expr.kind
+        else {
+            return None;
+        };
+        (!expr.parenthesised && outer.binding() < op.binding()).then_some(right)
     }
 
     fn replace_right(&mut self, parent: Id<Expr>, new: Id<Expr>) {

@@ -100,7 +100,7 @@ impl Build<'_, '_> {
         self.report(diagnostic);
     }
 
-    fn bad_number(&mut self, start: u32, message: String, note: &str, end: u32) {
+    fn bad_number(&mut self, start: u32, message: impl Into<String>, note: &str, end: u32) {
         let diagnostic = Diagnostic::new(Code::E0019, self.span(start, end), message).note(note);
         self.report(diagnostic);
     }

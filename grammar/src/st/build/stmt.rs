@@ -124,25 +124,22 @@ impl Build<'_, '_> {
     fn value_as_statement(&mut self, expr: Id<Expr>) {
         let node = self.arena[expr];
         let span = self.span_of(node.range);
-        let diagnostic = match node.kind {
-            ExprKind::Binary {
-                op: BinaryOp::Equal,
-                op_start,
-                left,
-                ..
-            } if self.is_path(left) => {
-                let op = self.span(op_start + self.base, op_start + self.base + 1);
-                Diagnostic::new(Code::E0028, op, "`=` compares, it does not assign")
-                    .label("expected `:=`")
-                    .also(span, "the result of this comparison is not used")
-                    .fix("assign with `:=`", op, ":=")
-            }
-            _ => Diagnostic::new(
-                Code::E0028,
-                span,
-                "the value of this expression is not used",
-            )
-            .label("expected a statement"),
+        let diagnostic = if let ExprKind::Binary {
+            op: BinaryOp::Equal,
+            op_start,
+            left,
+            ..
+        } = node.kind
+            && self.is_path(left)
+        {
+            let op = self.span(op_start + self.base, op_start + self.base + 1);
+            Diagnostic::new(Code::E0028, op, "`=` compares, it does not assign")
+                .label("expected `:=`")
+                .also(span, "the result of this comparison is not used")
+                .fix("assign with `:=`", op, ":=")
+        } else {
+            let message = "the value of this expression is not used";
+            Diagnostic::new(Code::E0028, span, message).label("expected a statement")
         };
         self.report(diagnostic);
     }

@@ -47,8 +47,7 @@ fn nanoseconds(shape: TimeShape, text: &str) -> Parsed<i64> {
         TimeShape::Clock => clock(text),
         TimeShape::Date => at_midnight(text),
         TimeShape::DateAndClock => {
-            let dashes = text.match_indices('-').map(|(at, _)| at);
-            let at = dashes.last().ok_or("the time of day is missing")?;
+            let at = text.rfind('-').ok_or("the time of day is missing")?;
             let midnight = at_midnight(&text[..at])?;
             let ns = midnight.checked_add(clock(&text[at + 1..])?);
             ns.ok_or_else(out_of_range)

@@ -1,0 +1,94 @@
+//! Names that are missing, and reserved words in the place of names.
+
+use super::blocks::{Context, is_closer, is_pou, opens_statement};
+use super::{Kind, Repair, Token};
+use iecc_diag::{Code, Diagnostic};
+
+/// Whether a name follows an opener.
+pub(super) fn needs_name(opener: Kind) -> bool {
+    is_pou(opener)
+        || matches!(
+            opener,
+            Kind::Method | Kind::Property | Kind::Action | Kind::Configuration | Kind::Resource
+        )
+}
+
+impl Repair<'_, '_> {
+    /// Whether a keyword stands where only a name makes sense. Gives a message for each word.
+    pub(super) fn is_misnamed(&mut self, at: usize) -> bool {
+        let token = self.feed.tokens[at];
+        let kind = token.1.kind;
+        if kind.keyword().is_none() || !self.stands_for_name(at, kind) {
+            return false;
+        }
+        if self.misnamed.insert(token.1.symbol) {
+            let text = self.text(token);
+            let message = format!("`{text}` is a reserved word and cannot be a name");
+            let diagnostic =
+                Diagnostic::new(Code::E0018, self.span_of(token), message).label("expected a name");
+            self.report(diagnostic);
+        }
+        true
+    }
+
+    fn stands_for_name(&self, at: usize, kind: Kind) -> bool {
+        let next = self.next_kind(at);
+        if self.name_due {
+            return !is_closer(kind)
+                && !kind.opens_section()
+                && !kind.is_modifier()
+                && !opens_statement(kind)
+                && !matches!(kind, Kind::Extends | Kind::Implements | Kind::Using);
+        }
+        let begins = !self.pending || self.last_kind() == Some(Kind::Comma);
+        match self.context() {
+            Context::Variables => {
+                begins && matches!(next, Some(Kind::Colon | Kind::Comma | Kind::At))
+            }
+            Context::Types => begins && next == Some(Kind::Colon),
+            Context::Statements => {
+                let assigned = !self.pending && next == Some(Kind::Assign);
+                !self.in_header() && (assigned || is_never_in_statement(kind))
+            }
+            Context::Configuration | Context::Accessors => false,
+        }
+    }
+
+    /// Puts in the name of a unit or member that has none.
+    pub(super) fn settle_name(&mut self, token: Token) {
+        if !self.name_due || token.kind.is_modifier() {
+            return;
+        }
+        self.name_due = false;
+        if token.kind == Kind::Word {
+            return;
+        }
+        let opener = self.out.iter().rev().find(|token| {
+            token
+                .1
+                .kind
+                .keyword()
+                .is_some_and(|_| !token.1.kind.is_modifier())
+        });
+        let (word, span) = match opener {
+            Some(&opener) => (self.text(opener), self.span_of(opener)),
+            None => return,
+        };
+        let end = self.last_end();
+        let diagnostic = Diagnostic::new(Code::E0032, span, format!("{word} has no name"))
+            .label("expected a name behind this");
+        self.told.insert(end);
+        self.report(diagnostic);
+        self.put(Kind::Word);
+    }
+}
+
+/// Keywords that no statement has, and that open nothing among statements.
+fn is_never_in_statement(kind: Kind) -> bool {
+    let chart = (Kind::Step..=Kind::From).contains(&kind);
+    let configuration = (Kind::Configuration..=Kind::ReadWrite).contains(&kind);
+    let unit = is_pou(kind) || matches!(kind, Kind::Extends | Kind::Implements | Kind::Type);
+    let declaration = (Kind::Constant..=Kind::FEdge).contains(&kind) || kind.is_modifier();
+    let ty = matches!(kind, Kind::Array | Kind::RefTo | Kind::Overlap);
+    (chart || configuration || unit || declaration || ty) && !is_closer(kind)
+}

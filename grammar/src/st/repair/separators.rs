@@ -1,0 +1,208 @@
+//! Semicolons, and the words THEN, DO and OF, where they are missing.
+
+use super::blocks::{Context, closes_statement};
+use super::{Kind, Repair};
+use iecc_diag::{Code, Diagnostic};
+
+impl Repair<'_, '_> {
+    /// Puts in what must stand before a token. `false` if the token itself is to be left out.
+    pub(super) fn settle_separator(&mut self, at: usize, kind: Kind) -> bool {
+        if self.in_header() {
+            self.settle_header(at, kind);
+            return true;
+        }
+        if let Some(word) = self.awaits() {
+            return self.settle_awaited(at, kind, word);
+        }
+        self.leave_variables_before_statement(at, kind);
+        self.leave_to_case(at);
+        if self.pending && kind != Kind::Semicolon && self.ends_before(at, kind) {
+            self.end_statement(Some(at));
+        }
+        true
+    }
+
+    /// A header ends where something begins that cannot be part of it.
+    fn settle_header(&mut self, at: usize, kind: Kind) {
+        let statement = begins_statement(kind)
+            && self.on_new_line(at)
+            && self.last_kind().is_some_and(Kind::ends_operand);
+        if statement || self.is_structural(kind) {
+            self.end_header();
+            self.pending = false;
+        }
+    }
+
+    /// THEN, DO, OF or END_REPEAT must come before the next statement.
+    fn settle_awaited(&mut self, at: usize, kind: Kind, word: Kind) -> bool {
+        if kind == word || word == Kind::EndRepeat && kind == Kind::Semicolon {
+            return true;
+        }
+        let replaces = word != Kind::EndRepeat
+            && matches!(kind, Kind::Semicolon | Kind::Then | Kind::Do | Kind::Of);
+        if replaces {
+            return self.replace_by_awaited(at, word);
+        }
+        let next_line = begins_statement(kind)
+            && self.on_new_line(at)
+            && self.last_kind().is_some_and(Kind::ends_operand);
+        if !next_line && !self.is_structural(kind) {
+            return true;
+        }
+        if word == Kind::EndRepeat {
+            let inner = self.blocks.len() - 1;
+            self.close_above(inner, self.feed.tokens[at]);
+        } else {
+            self.put_awaited(word);
+        }
+        true
+    }
+
+    /// Another word, or a semicolon, stands where THEN, DO or OF belongs.
+    fn replace_by_awaited(&mut self, at: usize, word: Kind) -> bool {
+        let token = self.feed.tokens[at];
+        let found = self.text(token);
+        let name = word.keyword().expect("THEN, DO and OF are keywords");
+        let span = self.span_of(token);
+        let message = format!("found `{found}`, expected {name}");
+        if self.next_kind(at) == Some(word) {
+            let diagnostic = Diagnostic::new(Code::E0031, span, message)
+                .label(format!("{name} follows"))
+                .fix(format!("take out the `{found}`"), span, "");
+            self.report(diagnostic);
+            return false;
+        }
+        let opener = self.blocks.last().map(|block| block.opener);
+        let mut diagnostic = Diagnostic::new(Code::E0031, span, message)
+            .label(format!("expected {name}"))
+            .fix(format!("write {name}"), span, name);
+        if let Some(opener) = opener {
+            diagnostic = diagnostic.also(self.span_of(opener), format!("{name} of this"));
+        }
+        self.tell(diagnostic);
+        self.take_awaited(word);
+        false
+    }
+
+    fn put_awaited(&mut self, word: Kind) {
+        let name = word.keyword().expect("THEN, DO and OF are keywords");
+        let end = self.last_end();
+        let place = self.span(end, end);
+        let mut diagnostic = Diagnostic::new(Code::E0031, place, format!("{name} is missing"))
+            .label(format!("expected {name}"))
+            .fix(format!("put in {name}"), place, format!(" {name}"));
+        if let Some(block) = self.blocks.last() {
+            let opener = block.opener;
+            diagnostic = diagnostic.also(self.span_of(opener), format!("{name} of this"));
+        }
+        self.tell(diagnostic);
+        self.take_awaited(word);
+    }
+
+    fn take_awaited(&mut self, word: Kind) {
+        self.put(word);
+        self.pending = false;
+        if let Some(block) = self.blocks.last_mut() {
+            block.awaits = None;
+        }
+    }
+
+    /// A statement in a section of variables: END_VAR is missing.
+    fn leave_variables_before_statement(&mut self, at: usize, kind: Kind) {
+        let assigns = matches!(
+            self.next_kind(at),
+            Some(Kind::Assign | Kind::OpenParen | Kind::Dot | Kind::OpenBracket | Kind::Caret)
+        );
+        let section = self.blocks.len() > 1 && {
+            let opener = self.blocks[self.blocks.len() - 1].kind();
+            opener.opens_section() && !matches!(opener, Kind::VarConfig | Kind::VarAccess)
+        };
+        if section && !self.pending && assigns && kind == Kind::Word {
+            self.leave_declarations(self.feed.tokens[at]);
+        }
+    }
+
+    /// Whether a statement or declaration must have ended before this token.
+    fn ends_before(&self, at: usize, kind: Kind) -> bool {
+        // `name : STRUCT` goes on.
+        if matches!(kind, Kind::Struct | Kind::Union | Kind::Then | Kind::Do) {
+            return false;
+        }
+        if self.is_structural(kind) {
+            return true;
+        }
+        let complete = self.is_complete();
+        let new_line = || self.on_new_line(at);
+        match self.context() {
+            Context::Statements => {
+                let jumps = matches!(kind, Kind::Return | Kind::Exit | Kind::Continue);
+                let label = self
+                    .blocks
+                    .last()
+                    .is_some_and(|block| block.kind() == Kind::Case)
+                    && matches!(kind, Kind::Int | Kind::Based | Kind::TypePrefix);
+                let after_block = self
+                    .last_kind()
+                    .is_some_and(|last| closes_statement(last) || is_jump(last));
+                let begins = begins_statement(kind) || label;
+                complete && (jumps || begins && (after_block || new_line()))
+            }
+            Context::Variables => {
+                let declares = matches!(
+                    self.next_kind(at),
+                    Some(Kind::Colon | Kind::Comma | Kind::At)
+                );
+                complete && kind == Kind::Word && declares && new_line()
+            }
+            Context::Types => {
+                let declares = matches!(self.next_kind(at), Some(Kind::Colon | Kind::Extends));
+                complete && kind == Kind::Word && declares && new_line()
+            }
+            Context::Configuration | Context::Accessors => false,
+        }
+    }
+
+    /// Whether what stands so far could be a whole statement or declaration.
+    fn is_complete(&self) -> bool {
+        self.last_kind().is_some_and(|last| {
+            last.ends_operand()
+                || closes_statement(last)
+                || is_jump(last)
+                || matches!(
+                    last,
+                    Kind::REdge | Kind::FEdge | Kind::EndStruct | Kind::EndUnion
+                )
+        })
+    }
+
+    /// Puts in the semicolon of a statement or declaration. Without a message where more than a
+    /// semicolon is missing: the parser gives one.
+    pub(super) fn end_statement(&mut self, before: Option<usize>) {
+        if self.is_complete() {
+            let end = self.last_end();
+            let place = self.span(end, end);
+            let mut diagnostic = Diagnostic::new(Code::E0024, place, "a semicolon is missing")
+                .label("expected `;`")
+                .fix("put in the semicolon", place, ";");
+            if let Some(at) = before {
+                let next = self.feed.tokens[at];
+                let what = format!("before this `{}`", self.text(next));
+                diagnostic = diagnostic.also(self.span_of(next), what);
+            }
+            // After a bracket was put in, its message says enough.
+            if !self.told.contains(&end) {
+                self.tell(diagnostic);
+            }
+        }
+        self.put(Kind::Semicolon);
+        self.pending = false;
+    }
+}
+
+fn begins_statement(kind: Kind) -> bool {
+    matches!(kind, Kind::Word | Kind::This | Kind::Super | Kind::Direct)
+}
+
+fn is_jump(kind: Kind) -> bool {
+    matches!(kind, Kind::Return | Kind::Exit | Kind::Continue)
+}
