@@ -10,17 +10,20 @@
 //! could not be read.
 //!
 //! Trees are bounded: expressions by [`MAX_EXPR_DEPTH`], statements by [`MAX_BLOCK_DEPTH`], types
-//! by [`MAX_TYPE_DEPTH`], so whoever walks them may recurse. `print` gives canonical text,
-//! [`dump`] an outline for tests, [`walk`] helps to visit.
+//! by [`MAX_TYPE_DEPTH`], so whoever walks them may recurse. [`print_unit`] gives
+//! canonical text, [`dump`] an outline for tests; [`Arena::each_operand`] and its like help to visit.
 
 pub mod arena;
 pub mod calendar;
 pub mod config;
 pub mod decl;
+mod dump;
 pub mod expr;
 pub mod literal;
 pub mod pou;
+mod print;
 pub mod stmt;
+mod walk;
 
 pub use arena::{Arena, Id, List, Stored};
 pub use config::{
@@ -31,12 +34,14 @@ pub use decl::{
     Declarations, Dimension, Edge, EnumValue, Modifier, ModifierKind, SectionKind, TypeDecl,
     TypeKind, TypeSpec, VarDecl, VarSection,
 };
+pub use dump::dump;
 pub use expr::{
     AddressSize, Area, Argument, ArgumentKind, BinaryOp, Direct, Expr, ExprKind, Ident, Part,
     UnaryOp,
 };
 pub use literal::{IntLiteral, Literal, StringLiteral, TimeKind, TimeLiteral, TimeShape};
 pub use pou::{Accessor, Action, Member, Method, Pou, PouKind, Property};
+pub use print::{print_expr, print_file, print_unit};
 pub use stmt::{AssignOp, Block, CaseArm, IfArm, Label, Stmt, StmtKind};
 
 use iecc_source::{ContentHash, FileId, Span, TextRange};
