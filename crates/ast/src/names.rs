@@ -32,6 +32,8 @@ struct Entry {
     start: u32,
     end: u32,
     hash: u32,
+    /// Whether it is in the table only because it means something in the language.
+    reserved: bool,
 }
 
 impl Names {
@@ -50,7 +52,7 @@ impl Names {
         self.entries.is_empty()
     }
 
-    /// The name as it was spelled when first seen.
+    /// The name as it was spelled when first seen in a text.
     pub fn text(&self, symbol: Symbol) -> &str {
         self.spelling(self.entries[symbol.index()])
     }
@@ -64,8 +66,39 @@ impl Names {
         let place = self.place(name, hash);
         match self.places[place] {
             0 => self.add(name, hash, place),
-            index => Symbol(index - 1),
+            index => {
+                let symbol = Symbol(index - 1);
+                if self.entries[symbol.index()].reserved {
+                    self.respell(symbol, name);
+                }
+                symbol
+            }
         }
+    }
+
+    /// The symbol of a word of the language. It does not count as seen: whoever uses it as a name
+    /// gives it its spelling.
+    pub fn reserve(&mut self, word: &str) -> Symbol {
+        let count = self.len();
+        let symbol = self.intern(word);
+        if self.len() > count {
+            self.entries[symbol.index()].reserved = true;
+        }
+        symbol
+    }
+
+    fn respell(&mut self, symbol: Symbol, name: &str) {
+        let (start, end) = self.store(name);
+        let entry = &mut self.entries[symbol.index()];
+        (entry.start, entry.end) = (start, end);
+        entry.reserved = false;
+    }
+
+    fn store(&mut self, name: &str) -> (u32, u32) {
+        let start = self.text.len() as u32;
+        self.text.push_str(name);
+        let end = u32::try_from(self.text.len()).expect("less than 4 GiB of names");
+        (start, end)
     }
 
     /// The symbol of a name that has been seen before.
@@ -97,10 +130,13 @@ impl Names {
     }
 
     fn add(&mut self, name: &str, hash: u32, place: usize) -> Symbol {
-        let start = self.text.len() as u32;
-        self.text.push_str(name);
-        let end = u32::try_from(self.text.len()).expect("less than 4 GiB of names");
-        self.entries.push(Entry { start, end, hash });
+        let (start, end) = self.store(name);
+        self.entries.push(Entry {
+            start,
+            end,
+            hash,
+            reserved: false,
+        });
         self.places[place] = self.entries.len() as u32;
         Symbol(self.entries.len() as u32 - 1)
     }
@@ -138,6 +174,18 @@ mod tests {
         assert_eq!(names.find("motor"), Some(motor));
         assert_eq!(names.find("pump"), None);
         assert_eq!(Names::new().find("pump"), None);
+    }
+
+    #[test]
+    fn reserved_words_take_the_spelling_of_the_text() {
+        let mut names = Names::new();
+        let step = names.reserve("STEP");
+        assert_eq!(names.text(step), "STEP");
+        assert_eq!(names.intern("Step"), step);
+        assert_eq!(names.reserve("STEP"), step);
+        assert_eq!(names.text(step), "Step");
+        names.intern("step");
+        assert_eq!(names.text(step), "Step");
     }
 
     #[test]

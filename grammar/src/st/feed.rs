@@ -4,9 +4,11 @@
 use super::lexer::Tokens;
 use super::slice::Fragment;
 use super::token::{Kind, Token};
+use iecc_ast::Symbol;
 use iecc_ast::st::Pragma;
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_source::{Span, TextRange};
+use std::collections::BTreeSet;
 
 /// A token between its first byte and the one behind its last, as the parser wants it.
 pub(crate) type Located = (u32, Token, u32);
@@ -33,6 +35,7 @@ pub(crate) fn feed(
         base: fragment.start,
         diagnostics,
         hole: false,
+        foreign: BTreeSet::new(),
         feed: Feed {
             tokens: Vec::with_capacity(list.len()),
             pragmas: Vec::new(),
@@ -50,6 +53,8 @@ struct Feeder<'f, 't> {
     diagnostics: &'f mut Diagnostics,
     /// Whether something was left out before the next token.
     hole: bool,
+    /// Names with letters outside ASCII.
+    foreign: BTreeSet<Symbol>,
     feed: Feed,
 }
 
@@ -170,7 +175,11 @@ impl Feeder<'_, '_> {
         self.diagnostics.push(diagnostic);
     }
 
+    /// One message for each name.
     fn foreign_word(&mut self, token: Token) {
+        if !self.foreign.insert(token.symbol) {
+            return;
+        }
         let text = self.tokens.slice(token);
         let message = format!("the name `{text}` has letters outside ASCII");
         self.report(Code::E0017, token, message);

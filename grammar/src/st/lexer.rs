@@ -28,7 +28,7 @@ pub struct Tokens<'t> {
 /// Makes tokens of a text, and enters its names.
 pub fn lex<'t>(file: FileId, text: &'t str, dialect: Dialect, names: &mut Names) -> Tokens<'t> {
     let keywords = Keywords::new(dialect, names);
-    let no_name = names.intern("?");
+    let no_name = names.reserve("?");
     let mut raw = Raw::lexer(text);
     raw.bump(byte_order_mark(text));
     let mut lexer = StLexer {
@@ -162,8 +162,8 @@ struct StLexer<'t, 'n> {
     names: &'n mut Names,
     no_name: Symbol,
     list: Vec<Token>,
-    /// Indices of words that are keywords only among certain others.
-    soft: Vec<u32>,
+    /// Indices of words that are keywords only among certain others, with what they then are.
+    soft: Vec<(u32, Kind)>,
     nested_without_end: u32,
 }
 
@@ -235,37 +235,33 @@ impl StLexer<'_, '_> {
 
     /// A word, keyword, type prefix, or literal that begins with a word.
     fn word(&mut self) -> (Kind, Symbol) {
-        let symbol = self.names.intern(self.raw.slice());
         if self.raw.remainder().starts_with('#') {
-            let kind = match TimeKind::of_prefix(self.raw.slice()) {
-                Some(time) => self.time(time.shape()),
-                None => self.type_prefix(),
-            };
-            return (kind, symbol);
+            return self.prefixed();
         }
+        let symbol = self.names.intern(self.raw.slice());
         // Behind a dot stands the name of a member, whatever it is.
         if self.list.last().is_some_and(|last| last.kind == Kind::Dot) {
             return (Kind::Word, symbol);
         }
-        let kind = match self.keywords.get(symbol) {
-            None => Kind::Word,
-            Some((kind, false)) => {
-                if kind == Kind::Ref {
-                    self.soft.push(self.list.len() as u32);
-                }
-                kind
-            }
-            Some((kind, true)) => {
-                self.soft.push(self.list.len() as u32);
-                kind
-            }
+        let Some((keyword, soft)) = self.keywords.get(symbol) else {
+            return (Kind::Word, symbol);
         };
+        if soft || keyword == Kind::Ref {
+            self.soft.push((self.list.len() as u32, keyword));
+        }
+        let kind = if soft { Kind::Word } else { keyword };
         (kind, symbol)
     }
 
-    fn type_prefix(&mut self) -> Kind {
+    /// A word with `#` behind it.
+    fn prefixed(&mut self) -> (Kind, Symbol) {
+        let word = self.raw.slice();
+        if let Some(time) = TimeKind::of_prefix(word) {
+            return (self.time(time.shape()), self.no_name);
+        }
+        let symbol = self.names.intern(word);
         self.raw.bump(1);
-        Kind::TypePrefix
+        (Kind::TypePrefix, symbol)
     }
 
     /// The rest of a literal of a time. `:`, `-` and `.` belong to it before digits only:

@@ -6,22 +6,20 @@
 
 use super::token::{Kind, Token};
 
-/// Leaves the words at these indices the keywords they could be, or makes them names.
-pub(crate) fn decide(list: &mut [Token], soft: &[u32]) {
+/// Makes the words at these indices keywords where they can be nothing else.
+pub(crate) fn decide(list: &mut [Token], soft: &[(u32, Kind)]) {
     let mut open = Open::default();
-    for &index in soft {
+    for &(index, keyword) in soft {
         let index = index as usize;
         let around = Around {
             before: neighbour(list[..index].iter().rev()),
             after: neighbour(list[index + 1..].iter()),
             touches_equal: touches_equal(list, index),
         };
-        let kind = list[index].kind;
-        if open.is_keyword(kind, &around) {
-            open.count(kind);
+        if open.is_keyword(keyword, &around) {
+            open.count(keyword);
+            list[index].kind = keyword;
             merge_sign(list, index);
-        } else if kind != Kind::Ref {
-            list[index].kind = Kind::Word;
         }
     }
 }

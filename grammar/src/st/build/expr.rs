@@ -309,13 +309,17 @@ fn area(letter: char) -> Option<Area> {
 }
 
 /// Area, size, and numbers; `None` in place of the numbers is `*`.
-type DirectParts = (Area, Option<AddressSize>, Option<Vec<u32>>);
+type DirectParts = (Option<Area>, Option<AddressSize>, Option<Vec<u32>>);
 
 fn direct(text: &str) -> Option<DirectParts> {
-    let mut letters = text.chars().skip(1);
-    let area = area(letters.next()?)?;
-    let size = letters.next().and_then(size);
-    let rest = &text[2 + usize::from(size.is_some())..];
+    let mut rest = &text[1..];
+    let area = rest.chars().next().and_then(area);
+    rest = &rest[usize::from(area.is_some())..];
+    let size = rest.chars().next().and_then(size);
+    rest = &rest[usize::from(size.is_some())..];
+    if area.is_none() && size.is_none() {
+        return None;
+    }
     if rest == "*" {
         return Some((area, size, None));
     }

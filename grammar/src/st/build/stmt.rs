@@ -10,48 +10,27 @@ use iecc_diag::{Code, Diagnostic};
 impl Build<'_, '_> {
     pub(crate) fn statement(&mut self, start: u32, kind: StmtKind, end: u32) -> Id<Stmt> {
         let range = self.range(start, end);
-        let depth = self.deepest_block(&kind) + 1;
-        let (kind, depth) = if depth > MAX_BLOCK_DEPTH {
+        let depth = 1;
+        let stmt = self.arena.add(Stmt { kind, range, depth });
+        let depth = self.deepest_in(stmt) + 1;
+        self.arena[stmt].depth = depth;
+        if depth > MAX_BLOCK_DEPTH {
             self.too_deep("statements", MAX_BLOCK_DEPTH, range);
-            (StmtKind::Error, 1)
-        } else {
-            (kind, depth)
-        };
-        self.arena.add(Stmt { kind, range, depth })
-    }
-
-    fn deepest_block(&self, kind: &StmtKind) -> u16 {
-        match *kind {
-            StmtKind::If { arms, otherwise } => {
-                let arms = self.arena[arms].iter().map(|arm| arm.body);
-                self.deepest(arms.chain(otherwise))
-            }
-            StmtKind::Case {
-                arms, otherwise, ..
-            } => {
-                let arms = self.arena[arms].iter().map(|arm| arm.body);
-                self.deepest(arms.chain(otherwise))
-            }
-            StmtKind::For { body, .. }
-            | StmtKind::While { body, .. }
-            | StmtKind::Repeat { body, .. } => self.deepest([body]),
-            StmtKind::Assign { .. }
-            | StmtKind::Call(_)
-            | StmtKind::Return
-            | StmtKind::Exit
-            | StmtKind::Continue
-            | StmtKind::Empty
-            | StmtKind::Error => 0,
+            self.arena[stmt].kind = StmtKind::Error;
+            self.arena[stmt].depth = 1;
         }
+        stmt
     }
 
-    fn deepest(&self, blocks: impl IntoIterator<Item = Block>) -> u16 {
-        let depth = |&stmt: &Id<Stmt>| self.arena[stmt].depth;
-        let blocks = blocks.into_iter();
-        blocks
-            .filter_map(|block| self.arena[block].iter().map(depth).max())
-            .max()
-            .unwrap_or(0)
+    fn deepest_in(&self, stmt: Id<Stmt>) -> u16 {
+        let mut deepest = 0;
+        self.arena.each_block_of(stmt, |block| {
+            let depths = self.arena[block]
+                .iter()
+                .map(|&inner| self.arena[inner].depth);
+            deepest = depths.fold(deepest, u16::max);
+        });
+        deepest
     }
 
     pub(crate) fn assignment(

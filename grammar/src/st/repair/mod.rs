@@ -76,10 +76,7 @@ pub(crate) fn repair(
 
 /// Words that go on behind a bracket, never in it.
 fn never_in_brackets(kind: Kind) -> bool {
-    matches!(
-        kind,
-        Kind::Then | Kind::Of | Kind::Do | Kind::To | Kind::By
-    )
+    matches!(kind, Kind::Then | Kind::Of | Kind::Do | Kind::To | Kind::By)
 }
 
 /// What tells which block a closer belongs to.

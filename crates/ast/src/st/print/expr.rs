@@ -89,7 +89,10 @@ impl Printer<'_> {
     }
 
     fn direct(&mut self, direct: Direct) {
-        self.format(format_args!("%{}", direct.area.letter()));
+        self.write("%");
+        if let Some(area) = direct.area {
+            self.format(format_args!("{}", area.letter()));
+        }
         if let Some(size) = direct.size {
             self.format(format_args!("{}", size.letter()));
         }

@@ -148,22 +148,27 @@ impl Printer<'_> {
         }
         self.write("\n");
         match section.declarations {
-            Declarations::Variables(list) => self.variables(list, "END_VAR\n"),
+            Declarations::Variables(list) => {
+                self.indented(|printer| {
+                    let list = &printer.arena[list];
+                    list.iter().for_each(|&variable| printer.variable(variable));
+                });
+            }
             Declarations::Accesses(list) => {
                 self.indented(|printer| {
                     let list = &printer.arena[list];
                     list.iter().for_each(|&access| printer.access(access));
                 });
-                self.words("END_VAR");
             }
             Declarations::Instances(list) => {
                 self.indented(|printer| {
                     let list = &printer.arena[list];
                     list.iter().for_each(|&config| printer.instance(config));
                 });
-                self.words("END_VAR");
             }
         }
+        self.pragmas_before(section.range.end);
+        self.words("END_VAR");
     }
 
     fn access(&mut self, access: AccessDecl) {

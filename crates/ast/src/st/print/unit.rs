@@ -19,12 +19,15 @@ impl Printer<'_> {
                     let types = &printer.arena[*types];
                     types.iter().for_each(|&decl| printer.type_decl(decl));
                 });
-                self.write("END_TYPE\n");
+                self.end_unit("TYPE");
             }
             UnitKind::Pou(pou) => self.pou(pou),
             UnitKind::Configuration(configuration) => self.configuration(configuration),
             UnitKind::Globals(section) => self.section(*section),
-            UnitKind::Using(paths) => self.paths("USING ", *paths, ";\n"),
+            UnitKind::Using(paths) => {
+                self.pragmas_before(u32::MAX);
+                self.paths("USING ", *paths, ";\n");
+            }
             UnitKind::Nothing => {}
             UnitKind::Error => self.write("?\n"),
         }
@@ -53,7 +56,14 @@ impl Printer<'_> {
             }
         });
         self.block(pou.body);
-        self.format(format_args!("END_{}\n", pou.kind.as_str()));
+        self.end_unit(pou.kind.as_str());
+    }
+
+    /// The last line. Pragmas that are left stand before it: behind it they would belong to the
+    /// next unit.
+    fn end_unit(&mut self, word: &str) {
+        self.pragmas_before(u32::MAX);
+        self.format(format_args!("END_{word}\n"));
     }
 
     fn paths(&mut self, before: &str, paths: List<Id<Expr>>, after: &str) {
@@ -139,7 +149,7 @@ impl Printer<'_> {
                 printer.resource(resource);
             }
         });
-        self.write("END_CONFIGURATION\n");
+        self.end_unit("CONFIGURATION");
     }
 
     fn resource(&mut self, resource: &Resource) {
