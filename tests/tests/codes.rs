@@ -12,8 +12,14 @@ fn given_elsewhere(code: Code) -> bool {
     // No file at all; 256 MiB of text; the command line; the stimulus, whose examples are tables
     // that the tests of runs read; and targets, whose own tests hold what they refuse.
     ["E0001", "E0003", "E6030"].contains(&name)
+        || is_about_structured_text(code)
         || ("E6001".."E6020").contains(&name)
         || name.starts_with("E7")
+}
+
+/// The examples of these codes are `.st` files, which the tests of the reader read.
+fn is_about_structured_text(code: Code) -> bool {
+    (Code::E0010..=Code::E0033).contains(&code)
 }
 
 fn examples() -> PathBuf {

@@ -129,7 +129,8 @@ impl Slicer<'_, '_> {
             Kind::Type => inside.is_none() || named() && self.declares_type(at),
             Kind::Namespace => inside.is_none() || named(),
             Kind::EndNamespace => true,
-            Kind::Using | Kind::VarGlobal | Kind::VarConfig => inside.is_none(),
+            Kind::VarGlobal | Kind::VarConfig => matches!(inside, None | Some(Kind::Type)),
+            Kind::Using => inside.is_none(),
             _ => false,
         }
     }

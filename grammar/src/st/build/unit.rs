@@ -41,7 +41,14 @@ impl Build<'_, '_> {
         if let Some(statement) = parts.first_statement {
             let word = section.kind.as_str();
             let start = section.range.start + self.base;
-            let span = self.span(start, start + word.len() as u32);
+            let end = start + word.len() as u32;
+            let written = self.tokens.text.get(start as usize..end as usize);
+            if !written.is_some_and(|written| written.eq_ignore_ascii_case(word)) {
+                // Put in by the repair, which has told so.
+                parts.sections.push(section);
+                return parts;
+            }
+            let span = self.span(start, end);
             let message = format!("{word} stands behind statements");
             let diagnostic = Diagnostic::new(Code::E0027, span, message)
                 .label("expected before the first statement")

@@ -15,6 +15,12 @@ pub(super) struct Block {
     pub(super) has_else: bool,
     /// Whether a message says what is wrong with its opener.
     pub(super) told: bool,
+    /// Whether what stands in it is being left out.
+    pub(super) skips: bool,
+    /// Whether its header has a colon.
+    pub(super) has_colon: bool,
+    /// Whether its header has ON.
+    pub(super) has_on: bool,
 }
 
 /// What may stand in a block.
@@ -36,6 +42,9 @@ impl Block {
             in_header: has_header(kind),
             has_else: false,
             told: false,
+            skips: false,
+            has_colon: false,
+            has_on: false,
         }
     }
 
@@ -191,7 +200,6 @@ impl Repair<'_, '_> {
         if kind == Kind::Semicolon {
             self.push(token);
             self.pending = false;
-            self.end_header();
         } else if is_closer(kind) {
             self.close(token);
         } else if divides(kind) {
@@ -209,6 +217,7 @@ impl Repair<'_, '_> {
     pub(super) fn end_header(&mut self) {
         if let Some(block) = self.blocks.last_mut() {
             block.in_header = false;
+            block.skips = false;
         }
     }
 

@@ -40,7 +40,7 @@ impl Repair<'_, '_> {
     }
 
     /// The innermost block that fits, if no unit or method ends between.
-    fn in_same_body(&self, fits: impl Fn(&Block) -> bool) -> Option<usize> {
+    pub(super) fn in_same_body(&self, fits: impl Fn(&Block) -> bool) -> Option<usize> {
         let open = self.blocks.iter().enumerate().rev();
         open.take_while(|(_, block)| opens_statement(block.kind()))
             .find(|(_, block)| fits(block))

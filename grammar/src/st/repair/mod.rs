@@ -12,6 +12,7 @@
 mod blocks;
 mod brackets;
 mod closers;
+mod headers;
 mod names;
 mod report;
 mod separators;
@@ -32,6 +33,8 @@ pub(crate) struct Repaired {
     pub(crate) tokens: Vec<Located>,
     /// Where tokens were put in that a message tells of.
     told: BTreeSet<u32>,
+    /// Where brackets are that a message tells of.
+    brackets: BTreeSet<u32>,
 }
 
 impl Repaired {
@@ -45,7 +48,19 @@ impl Repaired {
             return false;
         };
         let put_in = start == end && self.told.contains(start);
-        put_in || feed.holes.binary_search(start).is_ok()
+        put_in || feed.holes.binary_search(start).is_ok() || self.has_bracket_message(*start)
+    }
+
+    /// Whether a message about a bracket has been given in the statement or declaration at a byte:
+    /// what else is wrong there mostly follows from it.
+    fn has_bracket_message(&self, at: u32) -> bool {
+        let ends = |token: &&Located| token.1.kind == Kind::Semicolon;
+        let (before, behind) = self
+            .tokens
+            .split_at(self.tokens.partition_point(|t| t.0 < at));
+        let first = before.iter().rev().find(ends).map_or(0, |token| token.2);
+        let last = behind.iter().find(ends).map_or(u32::MAX, |token| token.0);
+        self.brackets.range(first..=last).next().is_some()
     }
 }
 
@@ -67,10 +82,16 @@ pub(crate) fn repair(
             counted
         }
     };
+    let brackets = mended.diagnostics.iter();
+    let brackets = brackets
+        .filter(|diagnostic| diagnostic.code == Code::E0025)
+        .filter_map(|diagnostic| Some(diagnostic.primary.as_ref()?.span.start))
+        .collect();
     found.append(mended.diagnostics);
     Repaired {
         tokens: mended.out,
         told: mended.told,
+        brackets,
     }
 }
 

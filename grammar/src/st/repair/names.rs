@@ -88,7 +88,7 @@ fn is_never_in_statement(kind: Kind) -> bool {
     let chart = (Kind::Step..=Kind::From).contains(&kind);
     let configuration = (Kind::Configuration..=Kind::ReadWrite).contains(&kind);
     let unit = is_pou(kind) || matches!(kind, Kind::Extends | Kind::Implements | Kind::Type);
-    let declaration = (Kind::Constant..=Kind::FEdge).contains(&kind) || kind.is_modifier();
+    let declaration = matches!(kind, Kind::At | Kind::REdge | Kind::FEdge);
     let ty = matches!(kind, Kind::Array | Kind::RefTo | Kind::Overlap);
     (chart || configuration || unit || declaration || ty) && !is_closer(kind)
 }

@@ -1,6 +1,6 @@
 //! Semicolons, and the words THEN, DO and OF, where they are missing.
 
-use super::blocks::{Context, closes_statement};
+use super::blocks::{Block, Context, closes_statement};
 use super::{Kind, Repair};
 use iecc_diag::{Code, Diagnostic};
 
@@ -8,29 +8,25 @@ impl Repair<'_, '_> {
     /// Puts in what must stand before a token. `false` if the token itself is to be left out.
     pub(super) fn settle_separator(&mut self, at: usize, kind: Kind) -> bool {
         if self.in_header() {
-            self.settle_header(at, kind);
-            return true;
+            let keep = self.settle_header(at, kind);
+            if self.in_header() {
+                return keep;
+            }
+        }
+        if self.context() == Context::Accessors && !self.settle_accessors(at, kind) {
+            return false;
         }
         if let Some(word) = self.awaits() {
             return self.settle_awaited(at, kind, word);
         }
         self.leave_variables_before_statement(at, kind);
+        self.enter_variables_before_declaration(at, kind);
+        self.leave_structure_before_semicolon(at, kind);
         self.leave_to_case(at);
         if self.pending && kind != Kind::Semicolon && self.ends_before(at, kind) {
             self.end_statement(Some(at));
         }
         true
-    }
-
-    /// A header ends where something begins that cannot be part of it.
-    fn settle_header(&mut self, at: usize, kind: Kind) {
-        let statement = begins_statement(kind)
-            && self.on_new_line(at)
-            && self.last_kind().is_some_and(Kind::ends_operand);
-        if statement || self.is_structural(kind) {
-            self.end_header();
-            self.pending = false;
-        }
     }
 
     /// THEN, DO, OF or END_REPEAT must come before the next statement.
@@ -119,6 +115,73 @@ impl Repair<'_, '_> {
         };
         if section && !self.pending && assigns && kind == Kind::Word {
             self.leave_declarations(self.feed.tokens[at]);
+        }
+    }
+
+    /// In a property stand GET and SET only. Anything else is left out, with one message.
+    fn settle_accessors(&mut self, at: usize, kind: Kind) -> bool {
+        let fits = matches!(kind, Kind::Get | Kind::Set | Kind::EndProperty);
+        let Some(block) = self.blocks.last_mut() else {
+            return true;
+        };
+        let skips = std::mem::replace(&mut block.skips, !fits && kind != Kind::Semicolon);
+        if fits {
+            return true;
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            block.skips |= skips;
+        }
+        if !skips && kind != Kind::Semicolon {
+            let token = self.feed.tokens[at];
+            let message = format!("found `{}`, expected GET or SET", self.text(token));
+            let diagnostic = Diagnostic::new(Code::E0010, self.span_of(token), message)
+                .label("expected GET or SET");
+            self.report(diagnostic);
+        }
+        false
+    }
+
+    /// A declaration among statements: VAR is missing.
+    fn enter_variables_before_declaration(&mut self, at: usize, kind: Kind) {
+        let statements = self.context() == Context::Statements && !self.pending;
+        let in_case = self
+            .in_same_body(|block| block.kind() == Kind::Case)
+            .is_some();
+        if !statements || in_case || kind != Kind::Word || !self.declares(at) {
+            return;
+        }
+        let token = self.feed.tokens[at];
+        let message = format!("`{}` is declared outside of a section", self.text(token));
+        let diagnostic = Diagnostic::new(Code::E0033, self.span_of(token), message)
+            .label("expected VAR, VAR_INPUT or the like before this");
+        self.tell(diagnostic);
+        self.put(Kind::Var);
+        if let Some(&opener) = self.out.last() {
+            let mut block = Block::new(opener);
+            block.told = true;
+            self.blocks.push(block);
+        }
+    }
+
+    /// Whether `name :` or `name, name :` begins here, perhaps with AT.
+    fn declares(&self, at: usize) -> bool {
+        const LONGEST: usize = 256;
+        let ahead = self.feed.tokens[at..].iter().take(LONGEST);
+        let mut kinds = ahead.map(|token| token.1.kind);
+        let end =
+            kinds.find(|kind| !matches!(kind, Kind::Word | Kind::Comma | Kind::At | Kind::Direct));
+        end == Some(Kind::Colon)
+    }
+
+    /// A lone semicolon in a structure mostly stood behind END_STRUCT.
+    fn leave_structure_before_semicolon(&mut self, at: usize, kind: Kind) {
+        let structure = self
+            .blocks
+            .last()
+            .is_some_and(|block| matches!(block.kind(), Kind::Struct | Kind::Union));
+        if structure && !self.pending && kind == Kind::Semicolon {
+            let inner = self.blocks.len() - 1;
+            self.close_above(inner, self.feed.tokens[at]);
         }
     }
 
