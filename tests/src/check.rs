@@ -4,10 +4,13 @@
 use crate::differential::interpreter;
 use crate::rng::Rng;
 use crate::stimulus::random_stimulus;
+use iecc_ast::Names;
 use iecc_ast::rung::Rung;
+use iecc_ast::st::{File, UnitKind, dump, print_file};
 use iecc_diag::{Code, Diagnostics};
 use iecc_ir::{Layout, MemType, Module, Region};
 use iecc_passes::{HARDWARE, SOFTWARE, Settings, run_pipeline};
+use iecc_grammar::st::{Dialect, parse_file};
 use iecc_source::{FileId, MappedText};
 use iecc_target::{Engine, region_bytes};
 
@@ -115,4 +118,51 @@ fn without_spans(rung: &Rung) -> String {
         kept.push_str(part.split_once('}').expect("a span ends").1);
     }
     kept
+}
+
+/// Parsing Structured Text gives a tree without `Error`, whose canonical text has the same tree, or
+/// messages with places in the text. Says which.
+pub fn st(text: &str) -> bool {
+    let (file, names, diagnostics) = parse_st(text);
+    if diagnostics.has_errors() {
+        for diagnostic in &diagnostics {
+            let labels = diagnostic.primary.iter().chain(&diagnostic.secondary);
+            labels.for_each(|label| {
+                assert!(text.get(label.span.range()).is_some(), "{diagnostic:?}")
+            });
+            let fix = diagnostic.fix.as_ref();
+            assert!(
+                fix.is_none_or(|fix| text.get(fix.span.range()).is_some()),
+                "{diagnostic:?}"
+            );
+        }
+        outline(&file, &names);
+        return false;
+    }
+    assert!(
+        file.units
+            .iter()
+            .all(|unit| unit.kind != UnitKind::Error && !unit.has_errors)
+    );
+    let printed = print_file(&file, &names);
+    let (again, new_names, diagnostics) = parse_st(&printed);
+    assert!(diagnostics.is_empty(), "{diagnostics:#?}\n{printed}");
+    assert_eq!(
+        outline(&again, &new_names),
+        outline(&file, &names),
+        "{printed}"
+    );
+    assert_eq!(print_file(&again, &new_names), printed);
+    true
+}
+
+fn parse_st(text: &str) -> (File, Names, Diagnostics) {
+    let (mut names, mut diagnostics) = (Names::new(), Diagnostics::new());
+    let file = FileId::from_index(0);
+    let file = parse_file(file, text, Dialect::Iec, &mut names, &mut diagnostics);
+    (file, names, diagnostics)
+}
+
+fn outline(file: &File, names: &Names) -> String {
+    file.units.iter().map(|unit| dump(unit, names)).collect()
 }

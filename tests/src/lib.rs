@@ -14,4 +14,5 @@ pub mod rng;
 pub mod rung_text;
 pub mod runs;
 pub mod shared;
+pub mod st_text;
 pub mod stimulus;

@@ -140,8 +140,17 @@ fn describe(expected: &[String]) -> String {
             list.push(word.to_owned());
         }
     }
+    if list.is_empty() {
+        let rest = expected
+            .iter()
+            .map(|token| format!("`{}`", token.trim_matches('"')));
+        list.extend(rest.take(MOST_NAMED));
+    }
     join(&list)
 }
+
+/// How many tokens are named where they have no common name.
+const MOST_NAMED: usize = 6;
 
 fn join(list: &[String]) -> String {
     match list {

@@ -239,8 +239,10 @@ impl StLexer<'_, '_> {
             return self.prefixed();
         }
         let symbol = self.names.intern(self.raw.slice());
-        // Behind a dot stands the name of a member, whatever it is.
-        if self.list.last().is_some_and(|last| last.kind == Kind::Dot) {
+        // Right behind a dot stands the name of a member, whatever it is.
+        let start = self.raw.span().start as u32;
+        let last = self.list.last();
+        if last.is_some_and(|last| last.kind == Kind::Dot && last.end == start) {
             return (Kind::Word, symbol);
         }
         let Some((keyword, soft)) = self.keywords.get(symbol) else {

@@ -142,11 +142,19 @@ impl Slicer<'_, '_> {
             .is_some_and(|token| token.kind == Kind::Word)
     }
 
-    /// `PROGRAM name WITH task : type` or `PROGRAM name : type`.
+    /// `PROGRAM name WITH task : type` or `PROGRAM name : type`, perhaps with a slip in it: what tells
+    /// it from a unit is that there is a colon or semicolon before any section or assignment.
     fn is_instance(&self, at: usize) -> bool {
-        let mut next = self.following(at).filter(|token| !token.kind.is_modifier());
-        next.nth(1)
-            .is_some_and(|token| matches!(token.kind, Kind::With | Kind::Colon))
+        const LONGEST: usize = 16;
+        let mut kinds = self.following(at).take(LONGEST).map(|token| token.kind);
+        let end = kinds.find(|&kind| {
+            kind.opens_section()
+                || matches!(
+                    kind,
+                    Kind::With | Kind::Colon | Kind::Semicolon | Kind::Assign | Kind::EndProgram
+                )
+        });
+        matches!(end, Some(Kind::With | Kind::Colon | Kind::Semicolon))
     }
 
     /// `TYPE name :`, where a variable named `type` would be `type : …`.

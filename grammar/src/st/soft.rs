@@ -8,19 +8,34 @@ use super::token::{Kind, Token};
 
 /// Makes the words at these indices keywords where they can be nothing else.
 pub(crate) fn decide(list: &mut [Token], soft: &[(u32, Kind)]) {
+    // What is an operator shows whether the word before it is a name.
+    let (operators, words): (Vec<_>, Vec<_>) = soft
+        .iter()
+        .copied()
+        .partition(|(_, keyword)| is_operator(*keyword));
     let mut open = Open::default();
-    for &(index, keyword) in soft {
-        let index = index as usize;
-        let around = Around {
-            before: neighbour(list[..index].iter().rev()),
-            after: neighbour(list[index + 1..].iter()),
-            touches_equal: touches_equal(list, index),
-        };
-        if open.is_keyword(keyword, &around) {
-            open.count(keyword);
-            list[index].kind = keyword;
-            merge_sign(list, index);
-        }
+    for (index, keyword) in operators.into_iter().chain(words) {
+        decide_one(list, index as usize, keyword, &mut open);
+    }
+}
+
+fn is_operator(keyword: Kind) -> bool {
+    matches!(
+        keyword,
+        Kind::LatchAssign | Kind::UnlatchAssign | Kind::Ref | Kind::AndThen | Kind::OrElse
+    )
+}
+
+fn decide_one(list: &mut [Token], index: usize, keyword: Kind, open: &mut Open) {
+    let around = Around {
+        before: neighbour(list[..index].iter().rev()),
+        after: neighbour(list[index + 1..].iter()),
+        touches_equal: touches_equal(list, index),
+    };
+    if open.is_keyword(keyword, &around) {
+        open.count(keyword);
+        list[index].kind = keyword;
+        merge_sign(list, index);
     }
 }
 
@@ -61,9 +76,7 @@ impl Open {
                 behind_operand && around.touches_equal
             }
             Kind::AndThen | Kind::OrElse => behind_operand,
-            Kind::Pointer | Kind::Reference => {
-                after(&[Kind::To]) && before(&[Kind::Colon, Kind::Of, Kind::To, Kind::RefTo])
-            }
+            Kind::Pointer | Kind::Reference => after(&[Kind::To]) && before(&TYPE_BEFORE),
             Kind::Property => !named && before_name,
             Kind::VarStat | Kind::VarInst => !named && (before_name || after(&[Kind::EndVar])),
             Kind::Persistent => {
@@ -72,10 +85,15 @@ impl Open {
                     .is_some_and(|kind| kind.opens_section() || kind.is_modifier())
                     && !after(&[Kind::Colon, Kind::Comma, Kind::At])
             }
-            Kind::Union => before(&[Kind::Colon]) && after(&[Kind::Word, Kind::EndUnion]),
+            Kind::Union => before(&TYPE_BEFORE) && after(&[Kind::Word, Kind::EndUnion]),
             Kind::EndUnion => self.unions > 0,
             Kind::EndProperty => self.properties > 0,
-            Kind::Get | Kind::Set => self.properties > 0 && !named && !after(&IN_EXPRESSION),
+            Kind::Get | Kind::Set => {
+                let begins = behind_operand || before(&[Kind::EndGet, Kind::EndSet]);
+                let empty = begins && after(&[Kind::Semicolon]);
+                let holds = around.after.is_some_and(begins_accessor);
+                self.properties > 0 && !named && (empty || holds)
+            }
             Kind::EndGet | Kind::EndSet => self.properties > 0 && !named,
             _ => unreachable!("{kind:?} is not soft"),
         }
@@ -93,6 +111,9 @@ impl Open {
         }
     }
 }
+
+/// Behind these a type may follow.
+const TYPE_BEFORE: [Kind; 4] = [Kind::Colon, Kind::Of, Kind::To, Kind::RefTo];
 
 /// Behind these a name must follow, or an expression.
 const NAMED_BEFORE: [Kind; 24] = [
@@ -122,27 +143,26 @@ const NAMED_BEFORE: [Kind; 24] = [
     Kind::Private,
 ];
 
-/// A word before one of these is part of an expression or the target of an assignment.
-const IN_EXPRESSION: [Kind; 18] = [
-    Kind::Assign,
-    Kind::OpenParen,
-    Kind::OpenBracket,
-    Kind::CloseParen,
-    Kind::CloseBracket,
-    Kind::Comma,
-    Kind::Dot,
-    Kind::Caret,
-    Kind::Colon,
-    Kind::Equal,
-    Kind::NotEqual,
-    Kind::Plus,
-    Kind::Minus,
-    Kind::Star,
-    Kind::Slash,
-    Kind::Then,
-    Kind::Do,
-    Kind::Semicolon,
-];
+/// What may stand first in GET or SET. No name that is part of an expression stands before it.
+fn begins_accessor(kind: Kind) -> bool {
+    let ends = matches!(kind, Kind::EndGet | Kind::EndSet);
+    let statement = matches!(
+        kind,
+        Kind::Word
+            | Kind::Direct
+            | Kind::This
+            | Kind::Super
+            | Kind::If
+            | Kind::Case
+            | Kind::For
+            | Kind::While
+            | Kind::Repeat
+            | Kind::Return
+            | Kind::Exit
+            | Kind::Continue
+    );
+    ends || statement || kind.is_modifier() || kind.opens_section()
+}
 
 /// Makes one token of `S` and `=`.
 fn merge_sign(list: &mut [Token], index: usize) {

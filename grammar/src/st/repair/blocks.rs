@@ -21,6 +21,8 @@ pub(super) struct Block {
     pub(super) has_colon: bool,
     /// Whether its header has ON.
     pub(super) has_on: bool,
+    /// Whether GET or SET has been seen in it.
+    pub(super) has_accessor: bool,
 }
 
 /// What may stand in a block.
@@ -45,6 +47,7 @@ impl Block {
             skips: false,
             has_colon: false,
             has_on: false,
+            has_accessor: false,
         }
     }
 
@@ -182,16 +185,25 @@ impl Repair<'_, '_> {
         // `ARRAY […] OF` is no division of a statement.
         let divides = divides(kind)
             && context == Context::Statements
-            && (kind != Kind::Of || self.awaits() == Some(Kind::Of));
-        let configures = context == Context::Configuration
-            && matches!(kind, Kind::Task | Kind::Program | Kind::Resource);
+            && (kind != Kind::Of || self.awaits() == Some(Kind::Of) || self.is_selector());
+        let configures = self
+            .blocks
+            .first()
+            .is_some_and(|unit| unit.kind() == Kind::Configuration)
+            && matches!(kind, Kind::Task | Kind::Program);
         opens_statement(kind)
             || divides
             || configures
             || is_closer(kind)
             || is_member(kind)
             || kind.opens_section()
-            || matches!(kind, Kind::Struct | Kind::Union)
+            || matches!(kind, Kind::Struct | Kind::Union | Kind::Resource)
+    }
+
+    /// Whether what has begun could be the selector of a CASE, and no type.
+    fn is_selector(&self) -> bool {
+        let begun = self.out.get(self.begin..).unwrap_or_default();
+        self.pending && !begun.iter().any(|token| token.1.kind == Kind::Colon)
     }
 
     /// Acts on a semicolon or a word that opens, divides or closes a block.
@@ -205,7 +217,9 @@ impl Repair<'_, '_> {
         } else if divides(kind) {
             self.divide(token);
         } else if matches!(kind, Kind::Task | Kind::Program) {
+            self.leave_declarations(token);
             self.end_header();
+            self.begin = self.out.len();
             self.push(token);
             self.pending = true;
             self.name_due = true;
@@ -234,6 +248,14 @@ impl Repair<'_, '_> {
         } else if kind == Kind::Resource {
             self.leave_to(|block| block.kind() == Kind::Configuration, token);
         }
+        if matches!(kind, Kind::Struct | Kind::Union) {
+            self.complete_declaration(token);
+        }
+        if matches!(kind, Kind::Get | Kind::Set)
+            && let Some(property) = self.blocks.last_mut()
+        {
+            property.has_accessor = true;
+        }
         self.end_header();
         self.push(token);
         self.blocks.push(Block::new(token));
@@ -249,14 +271,10 @@ impl Repair<'_, '_> {
                     return;
                 }
             }
-            Kind::Until => {
-                if !self.leave_to_until(token) {
-                    return;
-                }
-            }
+            Kind::Until => self.leave_to_until(token),
             kind => {
-                if self.awaits() != Some(kind) {
-                    return self.stray(token);
+                if self.awaits() != Some(kind) && !self.open_for_divider(token) {
+                    return;
                 }
             }
         }
@@ -271,6 +289,28 @@ impl Repair<'_, '_> {
             };
         }
         self.pending = matches!(kind, Kind::Elsif | Kind::Until);
+    }
+
+    /// THEN, DO or OF behind something that no IF, FOR, WHILE or CASE began: that word is put in.
+    fn open_for_divider(&mut self, token: Located) -> bool {
+        self.closes_nothing(token);
+        if !self.pending {
+            return false;
+        }
+        let is_for = self.out[self.begin..]
+            .iter()
+            .any(|token| token.1.kind == Kind::To);
+        let opener = match token.1.kind {
+            Kind::Then => Kind::If,
+            Kind::Of => Kind::Case,
+            _ if is_for => Kind::For,
+            _ => Kind::While,
+        };
+        let opener = self.put_at_begin(opener);
+        let mut block = Block::new(opener);
+        block.told = true;
+        self.blocks.push(block);
+        true
     }
 
     /// Whether a colon ends the labels of a CASE, behind which a statement may begin.

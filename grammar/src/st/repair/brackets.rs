@@ -67,7 +67,7 @@ impl Repair<'_, '_> {
             && self.stays_open(at)
     }
 
-    fn looks_like_statement(&self, at: usize) -> bool {
+    pub(super) fn looks_like_statement(&self, at: usize) -> bool {
         let ahead = self.feed.tokens[at..].iter().map(|token| token.1.kind);
         let mut ahead = ahead.skip_while(|kind| matches!(kind, Kind::Word | Kind::Dot));
         matches!(ahead.next(), Some(Kind::Assign | Kind::OpenParen))

@@ -174,13 +174,20 @@ impl Repair<'_, '_> {
         }
     }
 
-    pub(super) fn leave_to_until(&mut self, token: Located) -> bool {
+    /// Makes the REPEAT of an UNTIL the innermost block; one is put in where there is none.
+    pub(super) fn leave_to_until(&mut self, token: Located) {
         let repeat = |block: &Block| block.kind() == Kind::Repeat && block.awaits.is_none();
-        match self.in_same_body(repeat) {
-            Some(index) => self.close_above(index + 1, token),
-            None => self.stray(token),
+        if let Some(index) = self.in_same_body(repeat) {
+            return self.close_above(index + 1, token);
         }
-        self.blocks.last().is_some_and(repeat)
+        self.closes_nothing(token);
+        self.told.insert(self.last_end());
+        self.put(Kind::Repeat);
+        if let Some(&opener) = self.out.last() {
+            let mut block = Block::new(opener);
+            block.told = true;
+            self.blocks.push(block);
+        }
     }
 
     /// Closes statements in an arm of a CASE when the label of the next arm begins.
@@ -202,23 +209,7 @@ impl Repair<'_, '_> {
         const LONGEST: usize = 64;
         let ahead = self.feed.tokens[at..].iter().take(LONGEST);
         let mut kinds = ahead.map(|token| token.1.kind);
-        let end = kinds.find(|kind| {
-            !matches!(
-                kind,
-                Kind::Word
-                    | Kind::Int
-                    | Kind::Based
-                    | Kind::TypePrefix
-                    | Kind::Minus
-                    | Kind::Dot
-                    | Kind::DotDot
-                    | Kind::Comma
-                    | Kind::Time
-                    | Kind::String
-                    | Kind::True
-                    | Kind::False
-            )
-        });
+        let end = kinds.find(|&kind| !may_be_label(kind));
         end == Some(Kind::Colon)
     }
 
@@ -235,6 +226,25 @@ impl Repair<'_, '_> {
     }
 }
 
-fn is_pou_closer(kind: Kind) -> bool {
+/// Whether a token can be part of labels of a CASE.
+pub(super) fn may_be_label(kind: Kind) -> bool {
+    matches!(
+        kind,
+        Kind::Word
+            | Kind::Int
+            | Kind::Based
+            | Kind::TypePrefix
+            | Kind::Minus
+            | Kind::Dot
+            | Kind::DotDot
+            | Kind::Comma
+            | Kind::Time
+            | Kind::String
+            | Kind::True
+            | Kind::False
+    )
+}
+
+pub(super) fn is_pou_closer(kind: Kind) -> bool {
     is_closer(kind) && (Kind::Function..=Kind::EndInterface).contains(&kind)
 }

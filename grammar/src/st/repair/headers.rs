@@ -58,8 +58,12 @@ impl Repair<'_, '_> {
             self.note_header(kind);
             return true;
         }
-        let next_line = self.on_new_line(at) && last.ends_operand();
-        if !accessor && !next_line && !self.is_structural(kind) && !self.action_ends(block, last) {
+        let begins = self.on_new_line(at) || self.looks_like_statement(at);
+        let ends = accessor
+            || begins && last.ends_operand()
+            || self.is_structural(kind)
+            || self.action_ends(block, last);
+        if !ends {
             return self.skip_in_header(at, block);
         }
         self.finish_header(at, block, last);

@@ -120,6 +120,8 @@ struct Repair<'r, 't> {
     brackets: Vec<Located>,
     /// Whether a statement or declaration has begun and not ended.
     pending: bool,
+    /// Where in `out` it has begun.
+    begin: usize,
     /// Whether a name must come next.
     name_due: bool,
     /// Reserved words that a message calls wrong names.
@@ -138,6 +140,7 @@ impl<'r, 't> Repair<'r, 't> {
             blocks: Vec::new(),
             brackets: Vec::new(),
             pending: false,
+            begin: 0,
             name_due: false,
             misnamed: BTreeSet::new(),
         };
@@ -192,8 +195,24 @@ impl<'r, 't> Repair<'r, 't> {
             kind if ends => return self.structure((start, Token { kind, ..token }, end)),
             _ => {}
         }
+        if !self.pending {
+            self.begin = self.out.len();
+        }
         self.push((start, token, end));
         self.pending = !self.is_label_end(token.kind);
+    }
+
+    /// Puts in an empty token before the statement that has begun.
+    fn put_at_begin(&mut self, kind: Kind) -> Located {
+        let at = self.out[self.begin].0;
+        let token = Token {
+            kind,
+            symbol: self.tokens.no_name,
+            start: at,
+            end: at,
+        };
+        self.out.insert(self.begin, (at, token, at));
+        (at, token, at)
     }
 
     fn push(&mut self, token: Located) {

@@ -18,7 +18,8 @@ impl Repair<'_, '_> {
     pub(super) fn is_misnamed(&mut self, at: usize) -> bool {
         let token = self.feed.tokens[at];
         let kind = token.1.kind;
-        if kind.keyword().is_none() || !self.stands_for_name(at, kind) {
+        let keyword = kind.keyword().is_some() && self.brackets.is_empty();
+        if !keyword || !self.stands_for_name(at, kind) {
             return false;
         }
         if self.misnamed.insert(token.1.symbol) {
@@ -38,7 +39,10 @@ impl Repair<'_, '_> {
                 && !kind.opens_section()
                 && !kind.is_modifier()
                 && !opens_statement(kind)
-                && !matches!(kind, Kind::Extends | Kind::Implements | Kind::Using);
+                && !matches!(
+                    kind,
+                    Kind::Extends | Kind::Implements | Kind::Using | Kind::On | Kind::With
+                );
         }
         let begins = !self.pending || self.last_kind() == Some(Kind::Comma);
         match self.context() {
@@ -47,10 +51,31 @@ impl Repair<'_, '_> {
             }
             Context::Types => begins && next == Some(Kind::Colon),
             Context::Statements => {
-                let assigned = !self.pending && next == Some(Kind::Assign);
+                let assigned =
+                    !self.pending && next == Some(Kind::Assign) && !opens_statement(kind);
                 !self.in_header() && (assigned || is_never_in_statement(kind))
             }
             Context::Configuration | Context::Accessors => false,
+        }
+    }
+
+    /// Puts in what `STRUCT` needs before it: a name and a colon.
+    pub(super) fn complete_declaration(&mut self, token: super::Located) {
+        let nameless = self.pending && self.out[self.begin].1.kind == Kind::Colon;
+        if nameless {
+            let span = self.span_of(token);
+            let diagnostic = Diagnostic::new(Code::E0032, span, "the structure has no name")
+                .label("expected a name and `:` before this");
+            self.report(diagnostic);
+            let (at, ..) = self.put_at_begin(Kind::Word);
+            self.told.insert(at);
+        } else if self.last_kind() == Some(Kind::Word) {
+            let span = self.span_of(token);
+            let message = format!("found `{}`, expected `:`", self.text(token));
+            let diagnostic =
+                Diagnostic::new(Code::E0010, span, message).label("expected `:` before this");
+            self.tell(diagnostic);
+            self.put(Kind::Colon);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Semicolons, and the words THEN, DO and OF, where they are missing.
 
-use super::blocks::{Block, Context, closes_statement};
+use super::blocks::{Block, Context, closes_statement, is_member};
+use super::closers::{is_pou_closer, may_be_label};
 use super::{Kind, Repair};
 use iecc_diag::{Code, Diagnostic};
 
@@ -23,6 +24,9 @@ impl Repair<'_, '_> {
         self.enter_variables_before_declaration(at, kind);
         self.leave_structure_before_semicolon(at, kind);
         self.leave_to_case(at);
+        if kind == Kind::EndRepeat {
+            self.put_until(at);
+        }
         if self.pending && kind != Kind::Semicolon && self.ends_before(at, kind) {
             self.end_statement(Some(at));
         }
@@ -39,9 +43,9 @@ impl Repair<'_, '_> {
         if replaces {
             return self.replace_by_awaited(at, word);
         }
-        let next_line = begins_statement(kind)
-            && self.on_new_line(at)
-            && self.last_kind().is_some_and(Kind::ends_operand);
+        let label = word == Kind::Of && may_be_label(kind);
+        let begins = is_jump(kind) || (begins_statement(kind) || label) && self.on_new_line(at);
+        let next_line = begins && self.last_kind().is_some_and(Kind::ends_operand);
         if !next_line && !self.is_structural(kind) {
             return true;
         }
@@ -103,6 +107,33 @@ impl Repair<'_, '_> {
         }
     }
 
+    /// UNTIL before what stands last in a REPEAT, or before nothing.
+    fn put_until(&mut self, at: usize) {
+        let Some(block) = self.blocks.last().copied() else {
+            return;
+        };
+        if block.kind() != Kind::Repeat || block.awaits.is_some() {
+            return;
+        }
+        let closer = self.feed.tokens[at];
+        let diagnostic = Diagnostic::new(Code::E0031, self.span_of(closer), "UNTIL is missing")
+            .label("expected UNTIL and a condition before this")
+            .also(self.span_of(block.opener), "UNTIL of this");
+        self.report(diagnostic);
+        if self.pending {
+            let (at, ..) = self.put_at_begin(Kind::Until);
+            self.told.insert(at);
+        } else {
+            self.told.insert(self.last_end());
+            self.put(Kind::Until);
+            self.put(Kind::Damaged);
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            block.awaits = Some(Kind::EndRepeat);
+        }
+        self.pending = false;
+    }
+
     /// A statement in a section of variables: END_VAR is missing.
     fn leave_variables_before_statement(&mut self, at: usize, kind: Kind) {
         let assigns = matches!(
@@ -118,25 +149,30 @@ impl Repair<'_, '_> {
         }
     }
 
-    /// In a property stand GET and SET only. Anything else is left out, with one message.
+    /// In a property stand GET and SET only. Anything else is left out, with one message; behind
+    /// GET and SET it shows that END_PROPERTY is missing.
     fn settle_accessors(&mut self, at: usize, kind: Kind) -> bool {
-        let fits = matches!(kind, Kind::Get | Kind::Set | Kind::EndProperty);
-        let Some(block) = self.blocks.last_mut() else {
+        let unit_goes_on = is_member(kind) || is_pou_closer(kind);
+        if unit_goes_on || matches!(kind, Kind::EndProperty | Kind::Semicolon) {
+            return true;
+        }
+        let Some(block) = self.blocks.last().copied() else {
             return true;
         };
-        let skips = std::mem::replace(&mut block.skips, !fits && kind != Kind::Semicolon);
-        if fits {
+        let token = self.feed.tokens[at];
+        if block.has_accessor && !block.skips {
+            let inner = self.blocks.len() - 1;
+            self.close_above(inner, token);
             return true;
         }
-        if let Some(block) = self.blocks.last_mut() {
-            block.skips |= skips;
-        }
-        if !skips && kind != Kind::Semicolon {
-            let token = self.feed.tokens[at];
+        if !block.skips {
             let message = format!("found `{}`, expected GET or SET", self.text(token));
             let diagnostic = Diagnostic::new(Code::E0010, self.span_of(token), message)
                 .label("expected GET or SET");
             self.report(diagnostic);
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            block.skips = true;
         }
         false
     }
@@ -147,7 +183,9 @@ impl Repair<'_, '_> {
         let in_case = self
             .in_same_body(|block| block.kind() == Kind::Case)
             .is_some();
-        if !statements || in_case || kind != Kind::Word || !self.declares(at) {
+        let first = if kind.is_modifier() { at + 1 } else { at };
+        let named = kind == Kind::Word || kind.is_modifier();
+        if !statements || in_case || !named || !self.declares(first) {
             return;
         }
         let token = self.feed.tokens[at];
@@ -188,7 +226,10 @@ impl Repair<'_, '_> {
     /// Whether a statement or declaration must have ended before this token.
     fn ends_before(&self, at: usize, kind: Kind) -> bool {
         // `name : STRUCT` goes on.
-        if matches!(kind, Kind::Struct | Kind::Union | Kind::Then | Kind::Do) {
+        if matches!(
+            kind,
+            Kind::Struct | Kind::Union | Kind::Then | Kind::Do | Kind::Of
+        ) {
             return false;
         }
         if self.is_structural(kind) {
@@ -241,6 +282,9 @@ impl Repair<'_, '_> {
     /// Puts in the semicolon of a statement or declaration. Without a message where more than a
     /// semicolon is missing: the parser gives one.
     pub(super) fn end_statement(&mut self, before: Option<usize>) {
+        if self.are_labels() {
+            return self.end_labels();
+        }
         if self.is_complete() {
             let end = self.last_end();
             let place = self.span(end, end);
@@ -258,6 +302,29 @@ impl Repair<'_, '_> {
             }
         }
         self.put(Kind::Semicolon);
+        self.pending = false;
+    }
+}
+
+impl Repair<'_, '_> {
+    /// Whether what has begun in a CASE can only be labels.
+    fn are_labels(&self) -> bool {
+        let case = |block: &Block| block.kind() == Kind::Case && block.awaits.is_none();
+        let begun = &self.out[self.begin..];
+        self.blocks.last().is_some_and(case)
+            && self.is_complete()
+            && begun.iter().all(|token| may_be_label(token.1.kind))
+    }
+
+    /// The colon behind labels is missing.
+    fn end_labels(&mut self) {
+        let end = self.last_end();
+        let place = self.span(end, end);
+        let diagnostic = Diagnostic::new(Code::E0010, place, "a label of CASE has no colon")
+            .label("expected `:`")
+            .fix("put in the colon", place, ":");
+        self.tell(diagnostic);
+        self.put(Kind::Colon);
         self.pending = false;
     }
 }
