@@ -8,9 +8,9 @@ use iecc_ast::Names;
 use iecc_ast::rung::Rung;
 use iecc_ast::st::{File, UnitKind, dump, print_file};
 use iecc_diag::{Code, Diagnostics};
+use iecc_grammar::st::{Dialect, parse_file};
 use iecc_ir::{Layout, MemType, Module, Region};
 use iecc_passes::{HARDWARE, SOFTWARE, Settings, run_pipeline};
-use iecc_grammar::st::{Dialect, parse_file};
 use iecc_source::{FileId, MappedText};
 use iecc_target::{Engine, region_bytes};
 
@@ -128,7 +128,7 @@ pub fn st(text: &str) -> bool {
         for diagnostic in &diagnostics {
             let labels = diagnostic.primary.iter().chain(&diagnostic.secondary);
             labels.for_each(|label| {
-                assert!(text.get(label.span.range()).is_some(), "{diagnostic:?}")
+                assert!(text.get(label.span.range()).is_some(), "{diagnostic:?}");
             });
             let fix = diagnostic.fix.as_ref();
             assert!(

@@ -332,7 +332,7 @@ impl Text<'_> {
         self.put("OF");
         self.some(3, |text| {
             text.list(2, ",", |text| {
-                text.one(&["1", "2..5", "idle", "Mode#run", "-3"])
+                text.one(&["1", "2..5", "idle", "Mode#run", "-3"]);
             });
             text.put(":");
             text.block(depth);

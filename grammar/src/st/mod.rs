@@ -12,6 +12,7 @@
 )]
 
 pub(crate) mod build;
+mod depth;
 mod explain;
 mod feed;
 mod lexer;

@@ -2,6 +2,7 @@
 
 use super::Dialect;
 use super::build::{Build, SyntaxError};
+use super::depth::nesting_error;
 use super::explain::Explain;
 use super::feed::{Feed, Located, feed};
 use super::lexer::{Tokens, lex};
@@ -70,6 +71,10 @@ fn parse(
     feed: &Feed,
     found: &mut Diagnostics,
 ) -> (UnitKind, Arena) {
+    if let Some(diagnostic) = nesting_error(tokens.file, &feed.tokens) {
+        found.push(diagnostic);
+        return (UnitKind::Error, Arena::new());
+    }
     let mut build = Build::new(tokens, fragment.start, true);
     if let Ok(kind) = run(&mut build, &feed.tokens) {
         found.append(build.diagnostics);
@@ -80,7 +85,9 @@ fn parse(
     let kind = match run(&mut build, &repaired.tokens) {
         Ok(kind) => kind,
         Err(error) => {
-            build.errors.push(error);
+            if !build.has_too_many_errors() {
+                build.errors.push(error);
+            }
             UnitKind::Error
         }
     };
@@ -185,8 +192,7 @@ impl<'a, 't> Assembler<'a, 't> {
             found.push(diagnostic);
         }
         if self.open.len() > MAX_SCOPE_DEPTH {
-            let message = format!("namespaces nest more than {MAX_SCOPE_DEPTH} deep");
-            found.push(Diagnostic::new(Code::E0013, opener, message));
+            return self.too_deep(opener, found);
         }
         let scope = Scope {
             parent: Some(self.innermost()),
@@ -199,6 +205,15 @@ impl<'a, 't> Assembler<'a, 't> {
         self.scope().items.push(Item::Scope(id));
         self.file.scopes.push(scope);
         self.open.push(id);
+    }
+
+    /// Lets a namespace stand for the one it is in.
+    fn too_deep(&mut self, opener: Span, found: &mut Diagnostics) {
+        if self.open.len() == MAX_SCOPE_DEPTH + 1 {
+            let message = format!("namespaces nest more than {MAX_SCOPE_DEPTH} deep");
+            found.push(Diagnostic::new(Code::E0013, opener, message));
+        }
+        self.open.push(self.innermost());
     }
 
     fn close_namespace(&mut self, fragment: &Fragment, found: &mut Diagnostics) {

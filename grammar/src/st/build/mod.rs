@@ -22,11 +22,14 @@ use lalrpop_util::{ErrorRecovery, ParseError};
 /// Why a parse stops before the end of the unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Damage {
-    /// Something is wrong, and nothing was mended beforehand.
+    /// Something is wrong, and nothing was mended beforehand; or too much is wrong.
     Strict,
     /// The unit is closed by the word of another kind of unit.
     WrongCloser,
 }
+
+/// How many mistakes the parser recovers from in one unit.
+const MAX_ERRORS: usize = 1000;
 
 /// A mistake the parser found.
 pub(crate) type SyntaxError = ParseError<u32, Token, Damage>;
@@ -69,6 +72,7 @@ pub(crate) struct ConfigParts {
 }
 
 /// An element of a configuration or resource.
+#[derive(Clone, Copy)]
 pub(crate) enum ConfigItem {
     Section(VarSection),
     Task(Task),
@@ -76,6 +80,7 @@ pub(crate) enum ConfigItem {
 }
 
 /// What stands in the parentheses of a type.
+#[derive(Clone, Copy)]
 pub(crate) enum SpecItem {
     Value(Id<Expr>),
     Range(Id<Expr>, Id<Expr>),
@@ -127,13 +132,18 @@ impl<'b, 't> Build<'b, 't> {
         &mut self,
         recovery: ErrorRecovery<u32, Token, Damage>,
     ) -> Result<(), SyntaxError> {
-        if self.strict {
+        if self.strict || self.has_too_many_errors() {
             return Err(ParseError::User {
                 error: Damage::Strict,
             });
         }
         self.errors.push(recovery.error);
         Ok(())
+    }
+
+    /// Whether so much is wrong that more messages are of no use.
+    pub(crate) fn has_too_many_errors(&self) -> bool {
+        self.errors.len() >= MAX_ERRORS
     }
 
     /// Says once per unit that it nests too deeply.

@@ -107,6 +107,7 @@ impl Build<'_, '_> {
 }
 
 /// What is wrong with the digits of a number.
+#[derive(Clone, Copy)]
 enum WrongDigits {
     Underline,
     NoDigit(char),

@@ -79,7 +79,7 @@ impl Build<'_, '_> {
         modifiers: Vec<Modifier>,
         name: Ident,
         result: Option<Id<TypeSpec>>,
-        parts: Box<Parts>,
+        parts: Parts,
         close: PouKind,
         end: u32,
     ) -> Result<UnitKind, SyntaxError> {
@@ -88,7 +88,6 @@ impl Build<'_, '_> {
                 error: Damage::WrongCloser,
             });
         }
-        let parts = *parts;
         let pou = Pou {
             kind,
             modifiers: self.arena.list(modifiers),
@@ -112,10 +111,9 @@ impl Build<'_, '_> {
         modifiers: Vec<Modifier>,
         name: Ident,
         result: Option<Id<TypeSpec>>,
-        parts: Box<Parts>,
+        parts: Parts,
         end: u32,
     ) -> Box<Member> {
-        let parts = *parts;
         Box::new(Member::Method(Method {
             modifiers: self.arena.list(modifiers),
             name,
@@ -146,17 +144,16 @@ impl Build<'_, '_> {
         get: bool,
         start: u32,
         modifiers: Vec<Modifier>,
-        parts: Box<Parts>,
+        parts: Parts,
         end: u32,
-    ) -> Box<(bool, Accessor)> {
-        let parts = *parts;
+    ) -> (bool, Accessor) {
         let accessor = Accessor {
             modifiers: self.arena.list(modifiers),
             sections: self.arena.list(parts.sections),
             body: self.arena.list(parts.body),
             range: self.range(start, end),
         };
-        Box::new((get, accessor))
+        (get, accessor)
     }
 
     pub(crate) fn property(
@@ -165,12 +162,11 @@ impl Build<'_, '_> {
         modifiers: Vec<Modifier>,
         name: Ident,
         ty: Id<TypeSpec>,
-        accessors: Vec<Box<(bool, Accessor)>>,
+        accessors: Vec<(bool, Accessor)>,
         end: u32,
     ) -> Box<Member> {
         let (mut get, mut set) = (None, None);
-        for accessor in accessors {
-            let (is_get, accessor) = *accessor;
+        for (is_get, accessor) in accessors {
             let place = if is_get { &mut get } else { &mut set };
             if let Some(first) = place.replace(accessor) {
                 *place = Some(first);
@@ -251,10 +247,9 @@ impl Build<'_, '_> {
         start: u32,
         name: Ident,
         on: Ident,
-        inner: Box<ConfigParts>,
+        inner: ConfigParts,
         end: u32,
     ) -> Box<ConfigParts> {
-        let inner = *inner;
         let resource = Resource {
             name: Some(name),
             on: Some(on),
@@ -271,10 +266,9 @@ impl Build<'_, '_> {
         &mut self,
         start: u32,
         name: Ident,
-        parts: Box<ConfigParts>,
+        parts: ConfigParts,
         end: u32,
     ) -> UnitKind {
-        let parts = *parts;
         let range = self.range(start, end);
         let mut resources = parts.resources;
         if !parts.tasks.is_empty() || !parts.programs.is_empty() {

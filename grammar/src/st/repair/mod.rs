@@ -187,10 +187,8 @@ impl<'r, 't> Repair<'r, 't> {
         }
         match token.kind {
             Kind::OpenParen | Kind::OpenBracket => self.brackets.push((start, token, end)),
-            Kind::CloseParen | Kind::CloseBracket => {
-                if !self.close_bracket((start, token, end)) {
-                    return;
-                }
+            Kind::CloseParen | Kind::CloseBracket if !self.close_bracket((start, token, end)) => {
+                return;
             }
             kind if ends => return self.structure((start, Token { kind, ..token }, end)),
             _ => {}
@@ -253,10 +251,13 @@ impl<'r, 't> Repair<'r, 't> {
 
     /// The column of a token, if it is the first of its line. Tabs count as one.
     fn indentation(&self, (start, ..): Located) -> Option<usize> {
-        let before = &self.tokens.text[..start as usize];
-        let line = before.rfind('\n').map_or(0, |at| at + 1);
-        let blank = before[line..].bytes().all(|b| b == b' ' || b == b'\t');
-        blank.then(|| before.len() - line)
+        let before = &self.tokens.text.as_bytes()[..start as usize];
+        let blank = |byte: &&u8| matches!(byte, b' ' | b'\t');
+        let column = before.iter().rev().take_while(blank).count();
+        match before.len().checked_sub(column + 1) {
+            Some(at) => (before[at] == b'\n').then_some(column),
+            None => Some(column),
+        }
     }
 
     fn span(&self, start: u32, end: u32) -> Span {

@@ -180,12 +180,13 @@ impl Repair<'_, '_> {
     /// A declaration among statements: VAR is missing.
     fn enter_variables_before_declaration(&mut self, at: usize, kind: Kind) {
         let statements = self.context() == Context::Statements && !self.pending;
-        let in_case = self
-            .in_same_body(|block| block.kind() == Kind::Case)
-            .is_some();
         let first = if kind.is_modifier() { at + 1 } else { at };
         let named = kind == Kind::Word || kind.is_modifier();
-        if !statements || in_case || !named || !self.declares(first) {
+        let in_case = || {
+            self.in_same_body(|block| block.kind() == Kind::Case)
+                .is_some()
+        };
+        if !statements || !named || !self.declares(first) || in_case() {
             return;
         }
         let token = self.feed.tokens[at];
