@@ -1,6 +1,6 @@
-//! Structured Text: text to [`File`].
+//! Structured Text: text to [`File`](iecc_ast::st::File).
 //!
-//! [`lex`] makes tokens, [`slice`] cuts them into units, [`parse_unit`] makes a tree of one unit;
+//! [`lex`] makes tokens, [`slice()`] cuts them into units, [`parse_unit`] makes a tree of one unit;
 //! [`parse_file`] does all of it. A unit that is right is parsed as it stands. Only when that
 //! fails its blocks are balanced and what is plainly missing is put in, each with one message, and
 //! it is parsed again with recovery from what is left; so the guesses of the repair never touch a
