@@ -28,14 +28,26 @@ impl Pipeline {
 
     /// Runs all of it.
     pub(crate) fn run(self, module: &mut Module, settings: &Settings) {
-        self.run_part(module, 0..self.passes().len(), settings);
+        run_passes(module, self.passes(), settings);
     }
 
     /// Runs some of its passes.
     pub(crate) fn run_part(self, module: &mut Module, part: Range<usize>, settings: &Settings) {
-        run_pipeline(module, &self.passes()[part], settings, &mut |_, _| {})
-            .expect("pipelines list passes that exist");
+        run_passes(module, &self.passes()[part], settings);
     }
+
+    /// All passes a module goes through on the way to an engine or target.
+    fn whole(self) -> Vec<&'static str> {
+        match self {
+            Self::Hardware | Self::HardwareSpeed => [HARDWARE, HARDWARE_SPEED].concat(),
+            Self::Software => SOFTWARE.to_vec(),
+        }
+    }
+}
+
+fn run_passes(module: &mut Module, passes: &[&str], settings: &Settings) {
+    run_pipeline(module, passes, settings, &mut |_, _| {})
+        .expect("pipelines list passes that exist");
 }
 
 /// A place in a pipeline: after this run of this pass.
@@ -57,19 +69,20 @@ pub struct NoSuchPlace {
 impl fmt::Display for NoSuchPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let After { pass, run } = &self.after;
-        let runs = self.pipeline.passes().iter().filter(|name| *name == pass);
+        let passes = self.pipeline.whole();
+        let runs = passes.iter().filter(|name| *name == pass);
         match runs.count() {
             0 => write!(f, "the pipeline has no pass `{pass}`; ")?,
             runs => write!(f, "the pipeline runs `{pass}` {runs} times, not {run}; ")?,
         }
-        write!(f, "it is {}", self.pipeline.passes().join(", "))
+        write!(f, "it is {}", passes.join(", "))
     }
 }
 
 impl std::error::Error for NoSuchPlace {}
 
-/// Prints a module: as it is, or after a pipeline, run to its end or to the place given. Nothing is
-/// assumed about the period of scans.
+/// Prints a module: as it is, or after a pipeline, run to its end or to the place given. For hardware
+/// one scan runs in every clock of 50 MHz.
 ///
 /// # Errors
 /// The pipeline has no such place.
@@ -79,10 +92,10 @@ pub fn show(
     after: Option<&After>,
 ) -> Result<String, NoSuchPlace> {
     if let Some(pipeline) = pipeline {
-        let passes = pipeline.passes();
+        let passes = pipeline.whole();
         let end = match after {
             None => passes.len(),
-            Some(after) => place(passes, after).ok_or_else(|| NoSuchPlace {
+            Some(after) => place(&passes, after).ok_or_else(|| NoSuchPlace {
                 pipeline,
                 after: after.clone(),
             })?,
