@@ -71,11 +71,16 @@ fn clears(func: &Function, form: &ScanForm) -> Vec<Clear> {
 /// `c ? a : constant`, as condition, a and the constant.
 fn cleared_by(func: &Function, next: Value) -> Option<(Value, Value, u64)> {
     match func.def_inst(next)? {
-        InstData::Select { cond, args } if func.value_type(next).is_int() => {
+        InstData::Select { cond, args } if is_number(func.value_type(next)) => {
             Some((*cond, args[0], func.constant(args[1])?))
         }
         _ => None,
     }
+}
+
+/// Bits stay as they are: one of them may be the flag that another leaf is read by.
+fn is_number(ty: Type) -> bool {
+    ty.is_int() && ty != Type::I1
 }
 
 fn apply(func: &mut Function, form: &ScanForm, clears: &[Clear]) {
