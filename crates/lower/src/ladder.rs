@@ -10,13 +10,13 @@ use iecc_ir::{
     BinaryOp, FaultCode, FuncId, Function, FunctionBuilder, Place, Type, UnaryOp, Value,
 };
 use iecc_sema::hir::{
-    self, Action, Arithmetic, Body, CoilKind, CompareOp, Computation, Condition, CounterKind,
-    Element, Elementary, Instruction, Op, Operand, Pou, ResetKind, TimerKind, Unary,
+    self, Action, Arithmetic, CoilKind, CompareOp, Computation, Condition, CounterKind, Element,
+    Elementary, Instruction, Op, Operand, Pou, ResetKind, Rung, TimerKind, Unary,
 };
 
 /// The function of a routine. Its parameters are the values that a call passes; its results, if it
 /// gives any, are whether a RET gave them, and the values.
-pub(crate) fn unit(lowering: &mut Lowering<'_>, pou: &Pou) -> Function {
+pub(crate) fn unit(lowering: &mut Lowering<'_>, pou: &Pou, rungs: &[Rung]) -> Function {
     let params: Vec<Type> = pou
         .parameters
         .iter()
@@ -29,9 +29,7 @@ pub(crate) fn unit(lowering: &mut Lowering<'_>, pou: &Pou) -> Function {
         label: String::new(),
     };
     unit.take_parameters();
-    match &pou.body {
-        Body::Ladder(rungs) => rungs.iter().for_each(|rung| unit.rung(rung)),
-    }
+    rungs.iter().for_each(|rung| unit.rung(rung));
     unit.leave(false, &[]);
     unit.builder.finish()
 }

@@ -13,6 +13,7 @@
 mod ladder;
 mod library;
 mod scan;
+mod text;
 mod types;
 mod values;
 
@@ -60,7 +61,10 @@ pub fn lower(program: &hir::Program, options: &Options) -> Module {
     };
     lowering.declare_units();
     for (index, pou) in program.pous.iter().enumerate() {
-        let function = ladder::unit(&mut lowering, pou);
+        let function = match &pou.body {
+            hir::Body::Ladder(rungs) => ladder::unit(&mut lowering, pou, rungs),
+            hir::Body::Text(code) => text::unit(&mut lowering, pou, code),
+        };
         lowering.funcs[FuncId::from_u32(index as u32)] = function;
     }
     let scan = scan::scan(&mut lowering);

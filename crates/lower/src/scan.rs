@@ -17,10 +17,12 @@ pub(crate) fn scan(lowering: &mut Lowering<'_>) -> Function {
         let ty = point_type(program, point);
         copy(&mut builder, public, place(&point.place), ty);
     }
-    let origin = lowering.origin(&program.task.name, None);
-    builder.set_origin(Some(origin));
-    for main in &program.task.calls {
-        call_main(program, &mut builder, *main);
+    for task in &program.tasks {
+        let origin = lowering.origin(&task.name, None);
+        builder.set_origin(Some(origin));
+        for main in &task.calls {
+            call_main(program, &mut builder, *main);
+        }
     }
     if let Some(first_scan) = &program.first_scan {
         let zero = builder.constant(Type::I1, 0);
@@ -61,7 +63,7 @@ pub(crate) fn prescan(lowering: &mut Lowering<'_>) -> Function {
     let program = lowering.program;
     let mut builder = FunctionBuilder::new("prescan", &[], &[]);
     let mut seen = vec![false; program.pous.len()];
-    for main in &program.task.calls {
+    for main in program.tasks.iter().flat_map(|task| &task.calls) {
         let mut stack = Vec::new();
         if !std::mem::replace(&mut seen[main.index()], true) {
             stack.push(instructions(program.pou(*main)).into_iter());
@@ -95,6 +97,7 @@ fn instructions(pou: &Pou) -> Vec<(String, &Instruction)> {
                 });
             }
         }
+        Body::Text(_) => {}
     }
     found
 }

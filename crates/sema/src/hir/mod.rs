@@ -4,11 +4,13 @@
 //! program organisation units with their bodies, and the order in which a scan calls them. Nothing
 //! is left to decide for the lowering; a program with errors is not lowered.
 
+pub mod code;
 mod find;
 mod ladder;
 mod place;
 mod types;
 
+pub use code::{Code, InitId, Inits};
 pub use ladder::{
     Action, Arithmetic, CoilKind, CompareOp, Computation, Condition, Const, CounterKind, Element,
     Instruction, Logical, Op, Operand, Prescan, ResetKind, Rung, TimerKind, Unary,
@@ -16,7 +18,7 @@ pub use ladder::{
 pub use place::{Access, Place, Step};
 pub use types::{
     ArrayDef, ArrayId, Elementary, MemberDef, StructDef, StructId, StructKind, Type, Types,
-    Unusable,
+    Unusable, View,
 };
 
 use iecc_source::Span;
@@ -55,7 +57,11 @@ pub struct Tag {
     pub name: String,
     /// Its type.
     pub ty: Type,
-    /// Initial values of leaves that are not 0: the path from the tag, and the bits.
+    /// What the numbers in it stand for.
+    pub view: View,
+    /// Its initial value as a whole, of [`Program::inits`].
+    pub init: Option<InitId>,
+    /// Leaves whose initial values are other than that: the path from the tag, and the bits.
     pub initial: Vec<(Vec<Step>, u64)>,
     /// The declaration.
     pub span: Option<Span>,
@@ -90,15 +96,37 @@ pub struct Pou {
 pub enum Body {
     /// Rungs, top to bottom.
     Ladder(Vec<Rung>),
+    /// Statements. The unit's `parameters` and `results` are empty: the code has its own.
+    Text(Box<Code>),
 }
 
-/// What a scan runs.
+/// What runs together, and when. At a tick the tasks that are ready run one after the other, the one
+/// with the smallest priority number first, then in the order of declaration.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Task {
     /// Its name.
     pub name: String,
-    /// Units called in order.
+    /// When it is ready.
+    pub trigger: Trigger,
+    /// 0 comes first.
+    pub priority: u32,
+    /// Units called in order; they have no parameters.
     pub calls: Vec<PouId>,
+}
+
+/// When a task is ready.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Trigger {
+    /// In every scan.
+    #[default]
+    EveryScan,
+    /// By time and event.
+    Timed {
+        /// Nanoseconds from one release to the next, the first at 0; 0 for no releases.
+        interval_ns: u64,
+        /// A `BOOL`: its rising edge is an event, and while it is TRUE there are no releases by time.
+        single: Option<Place>,
+    },
 }
 
 /// A whole typed program.
@@ -118,8 +146,10 @@ pub struct Program {
     pub names: Vec<(String, Place)>,
     /// Units that can run.
     pub pous: Vec<Pou>,
-    /// The task that a scan runs.
-    pub task: Task,
+    /// Initial values.
+    pub inits: Inits,
+    /// What runs, in order of declaration; at least one.
+    pub tasks: Vec<Task>,
     /// The bit that is 1 in the first scan, where the program looks at it.
     pub first_scan: Option<Place>,
 }

@@ -1,5 +1,7 @@
 //! Types of a program, and the table that owns structures and arrays.
 
+use std::collections::HashMap;
+
 /// A type with one value.
 ///
 /// The order is the rank by which mixed operands are promoted: the higher of two wins.
@@ -139,8 +141,31 @@ pub enum StructKind {
     Counter,
     /// `CONTROL`, the backing of array and file instructions.
     Control,
-    /// A type the user or a module defines, strings included.
+    /// A string of Structured Text: `LEN`, a `DINT` between 0 and the length of `DATA`, and `DATA`, an
+    /// array of `USINT` or `UINT`. Elements from `LEN` on mean nothing, but are 0 at the start.
+    Text,
+    /// A type the user or a module defines, strings of Logix included.
     Plain,
+}
+
+/// What a number stands for, where people read or write it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub enum View {
+    /// A number, with the sign of its type; a truth value; also structures and arrays of such.
+    #[default]
+    Number,
+    /// A bit string.
+    Bits,
+    /// A character.
+    Character,
+    /// A duration in nanoseconds.
+    Time,
+    /// Nanoseconds since 1970-01-01, at midnight.
+    Date,
+    /// Nanoseconds since midnight.
+    TimeOfDay,
+    /// Nanoseconds since 1970-01-01.
+    DateTime,
 }
 
 /// A member of a structure.
@@ -150,6 +175,8 @@ pub struct MemberDef {
     pub name: String,
     /// Its type.
     pub ty: Type,
+    /// What the numbers in it stand for.
+    pub view: View,
     /// Cannot be named by programs.
     pub hidden: bool,
 }
@@ -187,7 +214,7 @@ impl StructDef {
 }
 
 /// An array type.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ArrayDef {
     /// Type of the elements.
     pub element: Type,
@@ -200,6 +227,7 @@ pub struct ArrayDef {
 pub struct Types {
     structs: Vec<StructDef>,
     arrays: Vec<ArrayDef>,
+    interned: HashMap<ArrayDef, ArrayId>,
 }
 
 impl Types {
@@ -212,12 +240,10 @@ impl Types {
     /// The array type, made on first use.
     pub fn array(&mut self, element: Type, len: u32) -> ArrayId {
         let wanted = ArrayDef { element, len };
-        let found = self.arrays.iter().position(|array| *array == wanted);
-        let index = found.unwrap_or_else(|| {
+        *self.interned.entry(wanted).or_insert_with(|| {
             self.arrays.push(wanted);
-            self.arrays.len() - 1
-        });
-        ArrayId(index as u32)
+            ArrayId(self.arrays.len() as u32 - 1)
+        })
     }
 
     /// A structure.

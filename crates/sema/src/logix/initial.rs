@@ -217,9 +217,11 @@ impl Reader<'_, '_> {
         let def = types.table.struct_def(id);
         let (kind, members) = (def.kind, def.members.clone());
         let slots = match (kind, types.storage(id)) {
-            (StructKind::Plain, Some(slots)) => slots.to_vec(),
+            (StructKind::Text | StructKind::Plain, Some(slots)) => slots.to_vec(),
             // The only predefined one, STRING, holds its members in order.
-            (StructKind::Plain, None) => (0..members.len() as u32).map(Slot::Member).collect(),
+            (StructKind::Text | StructKind::Plain, None) => {
+                (0..members.len() as u32).map(Slot::Member).collect()
+            }
             (StructKind::Timer | StructKind::Counter | StructKind::Control, _) => {
                 flags_then_numbers(&members)
             }
@@ -280,7 +282,7 @@ fn kept_when_cold(kind: StructKind, member: &str) -> bool {
     match kind {
         StructKind::Timer | StructKind::Counter => member == "PRE",
         StructKind::Control => member == "LEN",
-        StructKind::Plain => false,
+        StructKind::Text | StructKind::Plain => false,
     }
 }
 

@@ -43,10 +43,13 @@ impl Analysis<'_> {
         let calls = calls.filter_map(|main| schedule.units.get(main).copied());
         Program {
             name: self.project.controller.name.node.clone(),
-            task: Task {
+            tasks: vec![Task {
                 name: schedule.task.clone(),
+                trigger: crate::hir::Trigger::EveryScan,
+                priority: 0,
                 calls: calls.collect(),
-            },
+            }],
+            inits: crate::hir::Inits::default(),
             types: std::mem::take(&mut self.types.table),
             tags: std::mem::take(&mut self.tags),
             first_scan: self.symbols.first_scan.map(Place::whole),
@@ -85,6 +88,7 @@ impl Analysis<'_> {
                 Body::Ladder(rungs) => rungs.iter().for_each(|rung| {
                     rung.for_each_instruction(&mut |i| i.op.for_each_place(&mut note));
                 }),
+                Body::Text(_) => unreachable!("routines in text are refused"),
             }
         }
         uses.into_iter()

@@ -62,6 +62,8 @@ impl<'p> Analysis<'p> {
             Vec::new()
         };
         Ok(self.push_tag(hir::Tag {
+            view: crate::hir::View::Number,
+            init: None,
             name: tag.name.node.clone(),
             ty,
             initial,
@@ -93,6 +95,7 @@ impl<'p> Analysis<'p> {
                         .any(|def| def.name.eq_ignore_ascii_case(&name.node))
                     {
                         defs.push(MemberDef {
+                            view: crate::hir::View::Number,
                             name: name.node.clone(),
                             ty,
                             hidden: false,

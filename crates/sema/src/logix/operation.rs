@@ -157,7 +157,7 @@ fn reset_kind(kind: StructKind) -> ResetKind {
         StructKind::Timer => ResetKind::Timer,
         StructKind::Counter => ResetKind::Counter,
         StructKind::Control => ResetKind::Control,
-        StructKind::Plain => unreachable!("refused by the kind of the operand"),
+        StructKind::Text | StructKind::Plain => unreachable!("refused by the kind of the operand"),
     }
 }
 

@@ -214,6 +214,8 @@ impl<'p> Analysis<'p> {
             self.constants.insert(TagId::from_index(self.tags.len()));
         }
         self.push_tag(hir::Tag {
+            view: crate::hir::View::Number,
+            init: None,
             name,
             ty,
             initial,
@@ -336,6 +338,8 @@ impl<'p> Analysis<'p> {
         }
         if self.symbols.first_scan.is_none() {
             let id = self.push_tag(hir::Tag {
+                view: crate::hir::View::Number,
+                init: None,
                 name: "S:FS".to_owned(),
                 ty: hir::Type::Elementary(hir::Elementary::Bool),
                 initial: vec![(Vec::new(), 1)],

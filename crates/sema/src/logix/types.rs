@@ -120,6 +120,7 @@ impl NamedTypes {
         let members = members
             .iter()
             .map(|&(member, ty)| MemberDef {
+                view: crate::hir::View::Number,
                 name: member.to_owned(),
                 ty,
                 hidden: kind == StructKind::Timer && member == "last",
@@ -403,6 +404,7 @@ impl Collector<'_, '_> {
             }
             match self.member_type(member) {
                 Ok(ty) => def.members.push(MemberDef {
+                    view: crate::hir::View::Number,
                     name: member.name.node.clone(),
                     ty,
                     hidden: false,
