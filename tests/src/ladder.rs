@@ -14,7 +14,7 @@
 //! Values are whole numbers, or floats with a point. Only what the line names is compared.
 
 use iecc_diag::{Code, Diagnostics, Severity, render_text};
-use iecc_driver::{FrontOptions, compile};
+use iecc_driver::{FrontOptions, Sources, compile};
 use iecc_interp::Interpreter;
 use iecc_ir::{
     FaultCode, Index, Layout, MemType, Module, Place, Projection, Region, Root, StructId, Type,
@@ -267,7 +267,7 @@ fn structure(ty: &str, members: &[(&str, &str)]) -> String {
 pub fn compile_xml(xml: &str, options: &FrontOptions) -> (Result<Module, String>, Vec<Code>) {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let file = map.add("bench.L5X", xml);
-    let module = compile(&map, file, options, &mut diagnostics);
+    let module = compile(&map, &Sources::logix(file), options, &mut diagnostics);
     let codes = diagnostics
         .iter()
         .map(|diagnostic| diagnostic.code)

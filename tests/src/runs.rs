@@ -2,7 +2,7 @@
 
 use iecc_diag::{Diagnostics, render_text};
 use iecc_driver::run::{Request, Schedule, Session, Stimulus, Trace};
-use iecc_driver::{EngineKind, FrontOptions, compile, load};
+use iecc_driver::{EngineKind, FrontOptions, Sources, compile};
 use iecc_ir::{Module, verify};
 use iecc_jit::Jit;
 use iecc_source::SourceMap;
@@ -72,14 +72,15 @@ impl Trace for Recorder<'_> {
     }
 }
 
-/// The module of a Logix export that compiles.
+/// The module of a program that compiles.
 ///
 /// # Panics
 /// With the messages, if it does not.
 pub fn compiled(path: &Path, options: &FrontOptions) -> Module {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
-    let file = load(&mut map, path, &mut diagnostics);
-    let module = file.and_then(|file| compile(&map, file, options, &mut diagnostics));
+    let paths = [path.to_owned()];
+    let sources = Sources::load(&mut map, &paths, &options.levels, &mut diagnostics);
+    let module = sources.and_then(|sources| compile(&map, &sources, options, &mut diagnostics));
     module.unwrap_or_else(|| panic!("{}", messages(&map, &diagnostics)))
 }
 

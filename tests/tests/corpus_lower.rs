@@ -6,7 +6,7 @@
 )]
 
 use iecc_diag::{Code, Diagnostic, Diagnostics, Severity};
-use iecc_driver::{FrontOptions, compile, load};
+use iecc_driver::{FrontOptions, Sources, compile, load};
 use iecc_source::SourceMap;
 use iecc_tests::corpus::{CorpusFile, corpus_files};
 use iecc_tests::shared::shared_dir;
@@ -30,7 +30,8 @@ fn is_reason(code: Code) -> bool {
 fn outcome(file: &CorpusFile) -> Result<usize, (Diagnostic, String)> {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let id = load(&mut map, &file.path, &mut diagnostics).expect("the corpus is readable");
-    match compile(&map, id, &FrontOptions::default(), &mut diagnostics) {
+    let options = FrontOptions::default();
+    match compile(&map, &Sources::logix(id), &options, &mut diagnostics) {
         Some(module) => Ok(module.funcs.len()),
         None => {
             let errors = diagnostics.iter();

@@ -7,8 +7,8 @@
 use iecc_diag::Diagnostics;
 use iecc_driver::run::{CsvTrace, Request, Schedule, Session, Stimulus};
 use iecc_driver::{
-    EngineKind, FrontOptions, Init, Replay, TimerBase, VerilogRequest, build_verilog, compile,
-    load, write_artifacts,
+    EngineKind, FrontOptions, Init, Replay, Sources, TimerBase, VerilogRequest, build_verilog,
+    compile, load, write_artifacts,
 };
 use iecc_ir::Module;
 use iecc_source::SourceMap;
@@ -31,8 +31,10 @@ fn text_of(path: &str) -> String {
 /// The module of a program that gives no message at all.
 fn module_of(path: &str, options: &FrontOptions) -> Module {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
-    let file = load(&mut map, &example(path), &mut diagnostics).expect("the example is there");
-    let module = compile(&map, file, options, &mut diagnostics);
+    let paths = [example(path)];
+    let sources = Sources::load(&mut map, &paths, &options.levels, &mut diagnostics);
+    let sources = sources.expect("the example is there");
+    let module = compile(&map, &sources, options, &mut diagnostics);
     assert!(diagnostics.is_empty(), "{diagnostics:#?}");
     module.expect("no errors")
 }
@@ -85,7 +87,8 @@ fn build_ald(folder: &Path) {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let mut load = |path| load(&mut map, &example(path), &mut diagnostics).expect("it is there");
     let (file, csv) = (load("ald/ald.L5X"), load("ald/stimulus.csv"));
-    let module = compile(&map, file, &FrontOptions::default(), &mut diagnostics);
+    let (sources, options) = (Sources::logix(file), FrontOptions::default());
+    let module = compile(&map, &sources, &options, &mut diagnostics);
     let stimulus = Stimulus::parse(csv, map.file(csv).text(), &mut diagnostics);
     let request = VerilogRequest {
         clock_hz: Some(1_000),

@@ -37,19 +37,42 @@ impl Messages {
                 Format::Json => terminal::complain(&render_json(&self.map, diagnostic)),
             }
         }
-        let errors = self.count(Severity::Error);
+        let (errors, warnings) = (self.count(Severity::Error), self.count(Severity::Warning));
+        if format == Format::Text && errors + warnings > 0 {
+            terminal::complain(&summary(errors, warnings));
+        }
         if errors == 0 {
-            return ExitCode::SUCCESS;
+            ExitCode::SUCCESS
+        } else {
+            terminal::errors()
         }
-        if format == Format::Text {
-            let plural = if errors == 1 { "" } else { "s" };
-            terminal::complain(&format!("{errors} error{plural}"));
-        }
-        terminal::errors()
     }
 
     fn count(&self, severity: Severity) -> usize {
         let of_severity = |d: &&iecc_diag::Diagnostic| d.severity == severity;
         self.diagnostics.iter().filter(of_severity).count()
+    }
+}
+
+/// "3 errors, 2 warnings".
+fn summary(errors: usize, warnings: usize) -> String {
+    let counted = [(errors, "error"), (warnings, "warning")];
+    let parts = counted.into_iter().filter(|(count, _)| *count > 0);
+    let parts = parts.map(|(count, word)| {
+        let plural = if count == 1 { "" } else { "s" };
+        format!("{count} {word}{plural}")
+    });
+    parts.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::summary;
+
+    #[test]
+    fn the_summary_counts_what_there_is() {
+        assert_eq!(summary(1, 0), "1 error");
+        assert_eq!(summary(0, 2), "2 warnings");
+        assert_eq!(summary(3, 1), "3 errors, 1 warning");
     }
 }

@@ -1,17 +1,34 @@
-//! What commands that read a program have in common: the file, how to take it, and the stimulus.
+//! What commands that read a program have in common: the files, how to take them, and the stimulus.
 
 use crate::messages::Messages;
 use clap::ValueEnum;
+use iecc_diag::Code;
 use iecc_driver::run::{Stimulus, parse_duration};
-use iecc_driver::{Edits, FrontOptions, Init, TimerBase, load};
+use iecc_driver::{Dialect, Edits, FrontOptions, Init, Level, Levels, Sources, TimerBase, load};
 use iecc_ir::Module;
 use std::path::{Path, PathBuf};
 
 /// The program and choices it does not make.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Program {
-    /// The program: a Logix export (.L5X)
-    pub(crate) file: PathBuf,
+    /// The program: a Logix export (.L5X), or files of Structured Text (.st, .iecst); a folder
+    /// stands for all that lies in it
+    #[arg(value_name = "FILE", required = true)]
+    paths: Vec<PathBuf>,
+
+    /// Whose Structured Text it is
+    #[arg(long, value_enum, default_value = "iec", help_heading = "Program")]
+    dialect: DialectChoice,
+
+    /// What becomes of warnings: `error`, `warn` or `allow`, for all, or with =CODE for one
+    #[arg(short = 'W', long = "warnings", value_name = "LEVEL[=CODE]", value_parser = parse_level,
+          help_heading = "Program")]
+    warnings: Vec<WarningRule>,
+
+    /// Do not show this warning, as -W allow=CODE
+    #[arg(short = 'A', long = "allow", value_name = "CODE", value_parser = parse_allowed,
+          help_heading = "Program")]
+    allowed: Vec<WarningRule>,
 
     /// What tags hold at the start
     #[arg(long, value_enum, default_value = "cold", help_heading = "Program")]
@@ -44,6 +61,53 @@ enum EditsChoice {
     Test,
 }
 
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum DialectChoice {
+    /// IEC 61131-3, edition 3
+    Iec,
+    /// IEC 61131-3, edition 2
+    Iec2,
+    /// CODESYS and TwinCAT
+    Codesys,
+}
+
+/// What becomes of a warning, or of all.
+#[derive(Debug, Clone, Copy)]
+struct WarningRule {
+    level: Level,
+    code: Option<Code>,
+}
+
+fn parse_level(text: &str) -> Result<WarningRule, String> {
+    let (level, code) = match text.split_once('=') {
+        Some((level, code)) => (level, Some(code)),
+        None => (text, None),
+    };
+    let level = match level.to_ascii_lowercase().as_str() {
+        "error" => Level::Error,
+        "warn" => Level::Warn,
+        "allow" => Level::Allow,
+        _ => return Err("a level is error, warn or allow".to_owned()),
+    };
+    rule(level, code)
+}
+
+fn parse_allowed(code: &str) -> Result<WarningRule, String> {
+    rule(Level::Allow, Some(code))
+}
+
+fn rule(level: Level, code: Option<&str>) -> Result<WarningRule, String> {
+    let code = match code {
+        None => None,
+        Some(code) => {
+            let found = Code::parse(code).ok_or_else(|| format!("there is no code `{code}`"))?;
+            Levels::default().set(found, level)?;
+            Some(found)
+        }
+    };
+    Ok(WarningRule { level, code })
+}
+
 /// A unit, of one timer or of all.
 #[derive(Debug, Clone)]
 struct Base {
@@ -65,13 +129,6 @@ fn parse_base(text: &str) -> Result<Base, String> {
 
 impl Program {
     fn options(&self) -> FrontOptions {
-        let mut timer_base = TimerBase::default();
-        for base in &self.timer_base {
-            match &base.timer {
-                Some(timer) => timer_base.timers.push((timer.clone(), base.unit_ns)),
-                None => timer_base.unit_ns = base.unit_ns,
-            }
-        }
         FrontOptions {
             init: match self.init {
                 InitChoice::Cold => Init::Cold,
@@ -82,15 +139,44 @@ impl Program {
                 Some(EditsChoice::Orig) => Edits::Original,
                 Some(EditsChoice::Test) => Edits::Test,
             },
-            timer_base,
+            timer_base: self.timer_base(),
+            dialect: match self.dialect {
+                DialectChoice::Iec => Dialect::Iec,
+                DialectChoice::Iec2 => Dialect::IecEdition2,
+                DialectChoice::Codesys => Dialect::Codesys,
+            },
+            levels: self.levels(),
         }
+    }
+
+    fn timer_base(&self) -> TimerBase {
+        let mut timer_base = TimerBase::default();
+        for base in &self.timer_base {
+            match &base.timer {
+                Some(timer) => timer_base.timers.push((timer.clone(), base.unit_ns)),
+                None => timer_base.unit_ns = base.unit_ns,
+            }
+        }
+        timer_base
+    }
+
+    fn levels(&self) -> Levels {
+        let mut levels = Levels::default();
+        for rule in self.allowed.iter().chain(&self.warnings) {
+            match rule.code {
+                None => levels.set_others(rule.level),
+                Some(code) => levels.set(code, rule.level).expect("it was tried"),
+            }
+        }
+        levels
     }
 
     /// Reads the program and compiles it to a module ready for its first scan.
     pub(crate) fn compile(&self, messages: &mut Messages) -> Option<Module> {
         let (map, diagnostics) = (&mut messages.map, &mut messages.diagnostics);
-        let file = load(map, &self.file, diagnostics)?;
-        iecc_driver::compile(map, file, &self.options(), diagnostics)
+        let options = self.options();
+        let sources = Sources::load(map, &self.paths, &options.levels, diagnostics)?;
+        iecc_driver::compile(map, &sources, &options, diagnostics)
     }
 }
 

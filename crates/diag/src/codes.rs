@@ -162,6 +162,11 @@ codes! {
     E6029 Error "parameter connection is not compiled";
     E6030 Error "timer of the time base does not exist";
     E6031 Warning "module is inhibited";
+    E6050 Error "kind of a file is not known";
+    E6051 Error "files do not go together";
+    E6052 Error "no source file is there";
+    E6053 Warning "file in a folder is left out";
+    E6054 Error "folder is too deep or too large";
     // 7 target cannot express this
     E7001 Error "target cannot express a loop";
     E7002 Error "target cannot express a division";

@@ -153,6 +153,11 @@ impl Diagnostics {
         self.list.append(&mut other.list);
     }
 
+    /// Changes each as it likes, and keeps those for which it says so.
+    pub fn retain(&mut self, keep: impl FnMut(&mut Diagnostic) -> bool) {
+        self.list.retain_mut(keep);
+    }
+
     /// Sorts by file and place, errors without place first, keeping the order of equals.
     pub fn sort(&mut self) {
         self.list

@@ -1,17 +1,19 @@
 //! From a source file to a module whose image is ready for the first scan.
 //!
-//! `load` reads, `check` decides what the program means, `compile` goes on to the IR and runs
+//! [`Sources`] are read, `check` decides what the program means, `compile` goes on to the IR and runs
 //! prescan over the initial values with the interpreter. Each reports everything it finds; each
 //! gives a result only when there is no error.
 
+use crate::{Language, Levels, Sources};
+use iecc_ast::Names;
 use iecc_diag::{Code, Diagnostic, Diagnostics};
+use iecc_grammar::st::{Dialect, parse_file};
 use iecc_interp::run_prescan;
 use iecc_ir::{Module, verify};
 use iecc_lower::MILLISECOND_NS;
 use iecc_sema::hir::{self, StructKind};
 use iecc_sema::logix;
-use iecc_source::{FileId, SourceMap};
-use std::path::Path;
+use iecc_source::{SourceMap, Span};
 
 /// Choices that the source does not make.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -22,6 +24,10 @@ pub struct FrontOptions {
     pub edits: logix::Edits,
     /// What timers count.
     pub timer_base: TimerBase,
+    /// Whose Structured Text it is.
+    pub dialect: Dialect,
+    /// What becomes of warnings.
+    pub levels: Levels,
 }
 
 /// The unit of timer presets.
@@ -42,63 +48,66 @@ impl Default for TimerBase {
     }
 }
 
-/// Reads a file into the map.
-#[expect(
-    clippy::disallowed_methods,
-    reason = "the driver is where files are read"
-)]
-pub fn load(map: &mut SourceMap, path: &Path, diagnostics: &mut Diagnostics) -> Option<FileId> {
-    let name = path.display().to_string();
-    let bytes = match std::fs::read(path) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            let message = format!("{name}: {error}");
-            diagnostics.push(Diagnostic::without_place(Code::E0001, message));
-            return None;
-        }
-    };
-    match String::from_utf8(bytes) {
-        Ok(text) => Some(map.add(name, text)),
-        Err(error) => {
-            let offset = error.utf8_error().valid_up_to();
-            let message = format!("{name}: byte {offset} begins no UTF-8 character");
-            diagnostics.push(Diagnostic::without_place(Code::E0002, message));
-            None
-        }
-    }
-}
-
-/// Decides what the program of a file means.
+/// Decides what the program means.
 pub fn check(
     map: &SourceMap,
-    file: FileId,
+    sources: &Sources,
     options: &FrontOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<hir::Program> {
     let mut found = Diagnostics::new();
-    let project = iecc_l5x::read(file, map.file(file).text(), &mut found);
-    let program = project.map(|project| {
-        let options = logix::Options {
-            init: options.init,
-            edits: options.edits,
-        };
-        logix::analyze(&project, &options, &mut found)
-    });
+    let program = match sources.language() {
+        Language::Logix => check_logix(map, sources, options, &mut found),
+        Language::StructuredText => check_text(map, sources, options, &mut found),
+    };
+    options.levels.apply(&mut found);
     found.sort();
     let failed = found.has_errors();
     diagnostics.append(found);
     program.filter(|_| !failed)
 }
 
-/// Compiles the program of a file to a module that keeps the rules of the IR and whose image is
-/// that after prescan.
+fn check_logix(
+    map: &SourceMap,
+    sources: &Sources,
+    options: &FrontOptions,
+    found: &mut Diagnostics,
+) -> Option<hir::Program> {
+    let file = sources.files()[0];
+    let project = iecc_l5x::read(file, map.file(file).text(), found)?;
+    let options = logix::Options {
+        init: options.init,
+        edits: options.edits,
+    };
+    Some(logix::analyze(&project, &options, found))
+}
+
+fn check_text(
+    map: &SourceMap,
+    sources: &Sources,
+    options: &FrontOptions,
+    found: &mut Diagnostics,
+) -> Option<hir::Program> {
+    let mut names = Names::new();
+    for &file in sources.files() {
+        let text = map.file(file).text();
+        parse_file(file, text, options.dialect, &mut names, found);
+    }
+    let place = Span::point(sources.files()[0], 0);
+    let message = "this version of iecc reads Structured Text, and does not compile it yet";
+    found.push(Diagnostic::new(Code::E5025, place, message));
+    None
+}
+
+/// Compiles the program to a module that keeps the rules of the IR and whose image is that after
+/// prescan.
 pub fn compile(
     map: &SourceMap,
-    file: FileId,
+    sources: &Sources,
     options: &FrontOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<Module> {
-    let program = check(map, file, options, diagnostics)?;
+    let program = check(map, sources, options, diagnostics)?;
     let lowering = lower_options(&program, &options.timer_base, diagnostics)?;
     let mut module = iecc_lower::lower(&program, &lowering);
     let verified = match verify(&module) {
