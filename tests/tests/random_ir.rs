@@ -67,7 +67,7 @@ fn random_modules_hold_everything_there_is() {
         iecc_ir::CompareOp::ALL.iter().map(|op| op.name()).collect(),
         iecc_ir::ConvertOp::ALL.iter().map(|op| op.name()).collect(),
         FaultCode::ALL.iter().map(|code| code.name()).collect(),
-        "const select load store now elapsed step call jump brif switch return"
+        "const select load store copy clear now elapsed step call jump brif switch return"
             .split(' ')
             .collect(),
     ];
@@ -109,6 +109,8 @@ fn inst_name(inst: &InstData) -> &'static str {
         InstData::Select { .. } => "select",
         InstData::Load { .. } => "load",
         InstData::Store { .. } => "store",
+        InstData::Copy { .. } => "copy",
+        InstData::Clear { .. } => "clear",
         InstData::Now => "now",
         InstData::Elapsed { .. } => "elapsed",
         InstData::Step { .. } => "step",

@@ -40,13 +40,33 @@ impl Code {
         let scan = self.scan.expect("the code is finished");
         // SAFETY: the code lives as long as `self`. It reads and writes the context, the state and,
         // through the context, the inputs and outputs; every address it forms lies inside the
-        // region the place belongs to, since constant indices are verified and others compared with
+        // region or the local the place belongs to, since constant indices are verified and others compared with
         // their bounds first (`translate/memory.rs`), and the engine has checked the sizes of the
-        // regions. Nothing else refers to them during the call. It calls only itself and the two
-        // rounding functions, never unwinds, ends (`plan.rs`), and needs no more stack than
+        // regions. Nothing else refers to them during the call. It calls only itself, the two
+        // rounding functions and the two below, never unwinds, ends (`plan.rs`), and needs no more stack than
         // `compile.rs` allows.
         unsafe { scan(context, state.as_mut_ptr()) }
     }
+}
+
+/// Moves bytes for machine code.
+///
+/// # Safety
+/// Both ranges are memory that may be accessed.
+pub(crate) unsafe extern "C" fn copy_bytes(to: *mut u8, from: *const u8, len: usize) -> *mut u8 {
+    // SAFETY: said above; machine code passes places of one type, which lie in regions and locals.
+    unsafe { std::ptr::copy(from, to, len) };
+    to
+}
+
+/// Fills bytes for machine code.
+///
+/// # Safety
+/// The range is memory that may be changed.
+pub(crate) unsafe extern "C" fn fill_bytes(to: *mut u8, byte: i32, len: usize) -> *mut u8 {
+    // SAFETY: said above; machine code passes a place, which lies in a region or local.
+    unsafe { std::ptr::write_bytes(to, byte as u8, len) };
+    to
 }
 
 impl Drop for Code {

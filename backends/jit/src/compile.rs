@@ -1,7 +1,7 @@
 //! From a module to machine code: declares every function the scan needs, compiles them callees
 //! first, and sums up how much stack the deepest chain of calls takes.
 
-use crate::code::Code;
+use crate::code::{Code, copy_bytes, fill_bytes};
 use crate::plan::{Plan, calls};
 use crate::translate::{Program, translate};
 use cranelift_codegen::Context;
@@ -25,12 +25,15 @@ const MAX_STACK_BYTES: u64 = 1 << 20;
 const FRAME_OVERHEAD_BYTES: u64 = 16;
 
 /// The machine code of a program, or why there is none.
-pub(crate) fn compile(module: &Module, plan: &Plan) -> Result<Code, Vec<TargetError>> {
+pub(crate) fn compile(
+    module: &Module,
+    layout: &Layout,
+    plan: &Plan,
+) -> Result<Code, Vec<TargetError>> {
     let mut jit = new_module()?;
-    let layout = Layout::new(&module.types);
     let mut program = Program {
         module,
-        layout: &layout,
+        layout,
         plan,
         declared: SecondaryMap::new(),
     };
@@ -54,6 +57,8 @@ fn new_module() -> Result<JITModule, Vec<TargetError>> {
     // What processors without SSE4.1 call to round.
     builder.symbol("nearbyintf", round_f32 as *const u8);
     builder.symbol("nearbyint", round_f64 as *const u8);
+    builder.symbol("memmove", copy_bytes as *const u8);
+    builder.symbol("memset", fill_bytes as *const u8);
     Ok(JITModule::new(builder))
 }
 

@@ -11,6 +11,8 @@ pub(crate) struct ScanContext {
     pub(crate) inputs: *const u8,
     /// The output region.
     pub(crate) outputs: *mut u8,
+    /// Memory for the locals that do not lie on the stack.
+    pub(crate) locals: *mut u8,
     /// The time of the scan.
     pub(crate) now_ns: u64,
     /// The time of the scan before it, or its own in the first.
@@ -24,6 +26,7 @@ pub(crate) struct ScanContext {
 impl ScanContext {
     pub(crate) const INPUTS: i32 = offset_of!(ScanContext, inputs) as i32;
     pub(crate) const OUTPUTS: i32 = offset_of!(ScanContext, outputs) as i32;
+    pub(crate) const LOCALS: i32 = offset_of!(ScanContext, locals) as i32;
     pub(crate) const NOW_NS: i32 = offset_of!(ScanContext, now_ns) as i32;
     pub(crate) const PREVIOUS_NS: i32 = offset_of!(ScanContext, previous_ns) as i32;
     pub(crate) const BUDGET: i32 = offset_of!(ScanContext, budget) as i32;

@@ -20,7 +20,7 @@ mod translate;
 
 use code::Code;
 use context::ScanContext;
-use iecc_ir::{FaultCode, Origin, Region, Verified};
+use iecc_ir::{FaultCode, Layout, Origin, Region, Verified};
 use iecc_target::{Engine, Fault, TargetError, region_bytes};
 use plan::Plan;
 
@@ -31,7 +31,10 @@ pub const DEFAULT_BUDGET: u64 = 1 << 32;
 #[derive(Debug)]
 pub struct Jit {
     code: Code,
+    /// The region, and behind it what references that are absent may read.
     state: Vec<u8>,
+    state_len: usize,
+    locals: Vec<u8>,
     input_len: usize,
     output_len: usize,
     last_ns: Option<u64>,
@@ -47,10 +50,15 @@ impl Jit {
     /// # Errors
     /// The program is too large for machine code, or this computer has none.
     pub fn new(module: Verified<'_>) -> Result<Self, Vec<TargetError>> {
-        let plan = Plan::new(&module);
+        let layout = Layout::new(&module.types);
+        let plan = Plan::new(&module, &layout);
+        let mut state = module.image.bytes().to_vec();
+        state.resize(plan.state_bytes as usize, 0);
         Ok(Self {
-            code: compile::compile(&module, &plan)?,
-            state: module.image.bytes().to_vec(),
+            code: compile::compile(&module, &layout, &plan)?,
+            state,
+            state_len: module.image.bytes().len(),
+            locals: vec![0; plan.local_bytes as usize],
             input_len: region_bytes(&module, Region::Input).len(),
             output_len: region_bytes(&module, Region::Output).len(),
             last_ns: None,
@@ -69,7 +77,7 @@ impl Jit {
 
     /// The bytes of the state region.
     pub fn state(&self) -> &[u8] {
-        &self.state
+        &self.state[..self.state_len]
     }
 
     /// Replaces the bytes of the state region.
@@ -77,7 +85,7 @@ impl Jit {
     /// # Panics
     /// If the length is not that of the region.
     pub fn set_state(&mut self, state: &[u8]) {
-        self.state.copy_from_slice(state);
+        self.state[..self.state_len].copy_from_slice(state);
     }
 
     fn save(&mut self, outputs: &[u8]) {
@@ -102,6 +110,7 @@ impl Engine for Jit {
         let mut context = ScanContext {
             inputs: inputs.as_ptr(),
             outputs: outputs.as_mut_ptr(),
+            locals: self.locals.as_mut_ptr(),
             now_ns,
             previous_ns: self.last_ns.unwrap_or(now_ns),
             budget: self.budget,

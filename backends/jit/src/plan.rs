@@ -10,11 +10,37 @@
 
 use cranelift_entity::{EntityRef, EntitySet, SecondaryMap};
 use iecc_ir::analysis::{Cfg, Dominators, Loops};
-use iecc_ir::{Block, FuncId, Function, InstData, Module, Place, RefParam, Root, Terminator};
+use iecc_ir::{
+    Block, FuncId, Function, InstData, Layout, MemType, Module, Place, RefParam, Root, Terminator,
+};
 use std::collections::BTreeMap;
 
 /// Most instructions a function without loops may execute uncounted, its callees included.
 const FREE_WORK: u64 = 1 << 22;
+
+/// Bytes that are moved or made 0 for the work of one instruction.
+const BYTES_PER_WORK: u64 = 64;
+
+/// Most bytes of locals that lie on the stack; those of a function with more have memory of the
+/// engine.
+const STACK_LOCAL_BYTES: u64 = 4 << 10;
+
+/// Where the locals of a function lie.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) enum Locals {
+    /// It has none.
+    #[default]
+    None,
+    /// In so many bytes of its stack frame.
+    Stack(u32),
+    /// In the engine's memory for locals. No function calls itself, so each has a place of its own.
+    Engine {
+        /// Where they begin there.
+        offset: u64,
+        /// How many bytes they take.
+        bytes: u64,
+    },
+}
 
 /// What is known about one function.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +49,8 @@ pub(crate) struct Facts {
     pub(crate) can_fault: bool,
     /// It counts its work.
     pub(crate) metered: bool,
+    /// Where its locals lie.
+    pub(crate) locals: Locals,
     /// Instructions executed when every block runs once, those of unmetered callees included.
     pub(crate) work: u64,
     /// References that can stand for an element outside its array: loads through them give 0 and
@@ -38,22 +66,29 @@ pub(crate) struct Plan {
     /// What the scan reaches, callees before callers.
     pub(crate) order: Vec<FuncId>,
     facts: SecondaryMap<FuncId, Facts>,
+    /// Memory the engine provides for locals.
+    pub(crate) local_bytes: u64,
+    /// Bytes that lie behind the start of the state: a reference that is absent reads there.
+    pub(crate) state_bytes: u64,
 }
 
 impl Plan {
     /// Looks at every function the scan reaches.
-    pub(crate) fn new(module: &Module) -> Self {
+    pub(crate) fn new(module: &Module, layout: &Layout) -> Self {
         let order = callees_first(module);
         let mut plan = Self {
             order: order.clone(),
             facts: SecondaryMap::new(),
+            local_bytes: 0,
+            state_bytes: layout.size(&module.types, MemType::Struct(module.state)),
         };
         for &id in &order {
-            let facts = plan.examine(&module.funcs[id]);
+            let facts = plan.examine(module, layout, &module.funcs[id]);
             plan.facts[id] = facts;
         }
         for &id in order.iter().rev() {
             plan.pass_absent_refs(id, &module.funcs[id]);
+            plan.reserve_for_absent(module, layout, id);
         }
         plan
     }
@@ -63,25 +98,43 @@ impl Plan {
         &self.facts[func]
     }
 
-    fn examine(&self, func: &Function) -> Facts {
+    fn examine(&mut self, module: &Module, layout: &Layout, func: &Function) -> Facts {
         let cfg = Cfg::new(func);
         let mut facts = Facts::default();
+        let (_, local_bytes) = layout.locals(&module.types, func);
+        facts.locals = self.place_locals(local_bytes);
+        facts.work = local_bytes / BYTES_PER_WORK;
+        let own = |block| own_work(module, layout, func, block);
         for &block in cfg.reverse_postorder() {
-            facts.work = facts.work.saturating_add(self.block_work(func, block));
+            facts.work = facts
+                .work
+                .saturating_add(self.block_work(func, block, &own));
             facts.can_fault |= matches!(func.terminator(block), Terminator::Fault(_));
             for callee in calls(func, block) {
                 facts.can_fault |= self.facts[callee].can_fault;
                 facts.metered |= self.facts[callee].metered;
             }
         }
-        facts.payments = self.payments(func, &cfg, facts.work);
+        facts.payments = self.payments(func, &cfg, facts.work, &own);
         facts.metered |= !facts.payments.is_empty() || facts.work > FREE_WORK;
         facts.can_fault |= facts.metered;
         facts
     }
 
-    fn block_work(&self, func: &Function, block: Block) -> u64 {
-        let own = func.block(block).insts.len() as u64 + 1;
+    fn place_locals(&mut self, bytes: u64) -> Locals {
+        match bytes {
+            0 => Locals::None,
+            1..=STACK_LOCAL_BYTES => Locals::Stack(bytes as u32),
+            _ => {
+                let offset = self.local_bytes;
+                self.local_bytes += bytes;
+                Locals::Engine { offset, bytes }
+            }
+        }
+    }
+
+    fn block_work(&self, func: &Function, block: Block, own: &dyn Fn(Block) -> u64) -> u64 {
+        let own = own(block);
         calls(func, block)
             .map(|callee| &self.facts[callee])
             .filter(|callee| !callee.metered)
@@ -89,7 +142,13 @@ impl Plan {
     }
 
     /// Natural loops pay for their blocks, jumps back into irreducible ones for the whole function.
-    fn payments(&self, func: &Function, cfg: &Cfg, work: u64) -> BTreeMap<Block, u64> {
+    fn payments(
+        &self,
+        func: &Function,
+        cfg: &Cfg,
+        work: u64,
+        own: &dyn Fn(Block) -> u64,
+    ) -> BTreeMap<Block, u64> {
         let mut position = SecondaryMap::with_default(0);
         for (index, &block) in cfg.reverse_postorder().iter().enumerate() {
             position[block] = index;
@@ -108,7 +167,7 @@ impl Plan {
         if loops.irreducible.is_none() {
             payments.clear();
             for each in &loops.natural {
-                let body = each.blocks.iter().map(|&b| self.block_work(func, b));
+                let body = each.blocks.iter().map(|&b| self.block_work(func, b, own));
                 let body = body.fold(0, u64::saturating_add);
                 for &latch in &each.latches {
                     let payment = payments.entry(latch).or_insert(0);
@@ -138,14 +197,32 @@ impl Plan {
         }
     }
 
+    fn reserve_for_absent(&mut self, module: &Module, layout: &Layout, id: FuncId) {
+        for (param, data) in module.funcs[id].refs.iter() {
+            if self.facts[id].absent_refs.contains(param) {
+                let bytes = layout.size(&module.types, data.ty);
+                self.state_bytes = self.state_bytes.max(bytes);
+            }
+        }
+    }
+
     /// Whether the place may lie outside an array when `func` runs.
     pub(crate) fn can_be_absent(&self, func: FuncId, place: &Place) -> bool {
         let inherited = match place.root {
             Root::Ref(param) => self.facts[func].absent_refs.contains(param),
-            Root::State | Root::Input | Root::Output => false,
+            Root::State | Root::Input | Root::Output | Root::Local(_) => false,
         };
         inherited || !place.is_static()
     }
+}
+
+/// The work of a block without that of the functions it calls.
+fn own_work(module: &Module, layout: &Layout, func: &Function, block: Block) -> u64 {
+    let insts = &func.block(block).insts;
+    let moved = insts
+        .iter()
+        .map(|&inst| layout.moved_bytes(module, func, func.inst(inst)) / BYTES_PER_WORK);
+    moved.fold(insts.len() as u64 + 1, u64::saturating_add)
 }
 
 /// The callees of a block, in order.
@@ -161,6 +238,8 @@ pub(crate) fn calls(func: &Function, block: Block) -> impl Iterator<Item = FuncI
         | InstData::Select { .. }
         | InstData::Load { .. }
         | InstData::Store { .. }
+        | InstData::Copy { .. }
+        | InstData::Clear { .. }
         | InstData::Now
         | InstData::Elapsed { .. }
         | InstData::Step { .. } => None,

@@ -8,7 +8,8 @@ use crate::clock::{Divider, max_step};
 use crate::options::Options;
 use iecc_ir::analysis::{Cfg, Dominators, Loops, Range};
 use iecc_ir::{
-    BinaryOp, Function, Inst, InstData, Layout, MemType, Module, Origin, Terminator, Type, Value,
+    BinaryOp, Function, Inst, InstData, Layout, MemType, Module, Origin, Place, Root, Terminator,
+    Type, Value,
 };
 use iecc_target::{Refusal, TargetError};
 
@@ -31,6 +32,7 @@ pub(crate) fn check(module: &Module, options: &Options) -> Vec<TargetError> {
             check.inst(inst);
         }
     }
+    check.locals();
     check.errors
 }
 
@@ -125,13 +127,18 @@ impl Check<'_> {
                            scale the number to a DINT";
             self.refuse(Refusal::Float, origin, message);
         }
-        if data.place().is_some_and(|place| !place.is_static()) {
+        if data.places().iter().any(|place| !place.is_static()) {
             let message = "the index is computed here, and every register has its own place in hardware; \
                            use a constant index";
             self.refuse(Refusal::DynamicPlace, origin, message);
         }
         match data {
             InstData::Binary { op, args } => self.division(*op, args[1], origin),
+            InstData::Copy { .. } | InstData::Clear { .. } => {
+                let message = "more values are moved at once here than this target has registers for; move a \
+                               part of them";
+                self.refuse(Refusal::Size, origin, message);
+            }
             InstData::Now => {
                 let message = "the absolute time is used here, and hardware only knows how much time has \
                                passed since the scan before; use a timer";
@@ -155,6 +162,24 @@ impl Check<'_> {
             | InstData::Select { .. }
             | InstData::Load { .. }
             | InstData::Store { .. } => {}
+        }
+    }
+
+    /// What is left of locals, if nothing refused so far says why it is left.
+    fn locals(&mut self) {
+        let func = self.func;
+        let insts = func
+            .layout
+            .iter()
+            .flat_map(|&block| &func.block(block).insts);
+        let is_local = |place: &&Place| matches!(place.root, Root::Local(_));
+        let found = insts
+            .copied()
+            .find(|&inst| func.inst(inst).places().iter().any(is_local));
+        if let (Some(inst), true) = (found, self.errors.is_empty()) {
+            let message = "a variable of a call is left in memory here, and every register lives from scan to \
+                           scan; run the passes for hardware first";
+            self.refuse(Refusal::Option, func.origin(inst), message);
         }
     }
 

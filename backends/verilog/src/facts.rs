@@ -127,6 +127,8 @@ impl Facts {
             | InstData::Convert { .. }
             | InstData::Select { .. }
             | InstData::Store { .. }
+            | InstData::Copy { .. }
+            | InstData::Clear { .. }
             | InstData::Now
             | InstData::Elapsed { .. }
             | InstData::Call { .. } => Range::of_type(ty),
@@ -166,6 +168,8 @@ impl Facts {
                 | InstData::Compare { .. }
                 | InstData::Convert { .. }
                 | InstData::Select { .. }
+                | InstData::Copy { .. }
+                | InstData::Clear { .. }
                 | InstData::Now
                 | InstData::Elapsed { .. }
                 | InstData::Step { .. }
@@ -211,6 +215,8 @@ impl Facts {
             InstData::Const { .. }
             | InstData::Load { .. }
             | InstData::Store { .. }
+            | InstData::Copy { .. }
+            | InstData::Clear { .. }
             | InstData::Now
             | InstData::Elapsed { .. }
             | InstData::Step { .. }
@@ -251,7 +257,7 @@ impl Leaf {
         match place.root {
             Root::State => self.range.bits(),
             Root::Output => self.ty.bits(),
-            Root::Input | Root::Ref(_) => 0,
+            Root::Input | Root::Ref(_) | Root::Local(_) => 0,
         }
     }
 }
@@ -301,7 +307,7 @@ fn new_leaf(
                 .copied()
                 .unwrap_or_else(|| Range::of_type(ty)),
         ),
-        Root::Input | Root::Output | Root::Ref(_) => (0, Range::of_type(ty)),
+        Root::Input | Root::Output | Root::Ref(_) | Root::Local(_) => (0, Range::of_type(ty)),
     };
     assert!(
         place.root != Root::State || range.union(Range::of_bits(ty, initial)) == range,

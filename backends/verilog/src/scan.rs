@@ -138,6 +138,8 @@ impl Lowering<'_> {
             InstData::Load { place } => self.load(place, width),
             InstData::Step { unit_ns, .. } => self.step(*unit_ns, width),
             InstData::Store { .. }
+            | InstData::Copy { .. }
+            | InstData::Clear { .. }
             | InstData::Now
             | InstData::Elapsed { .. }
             | InstData::Call { .. } => panic!("refused by the check"),
@@ -334,7 +336,9 @@ impl Lowering<'_> {
             }
             Root::State => Source::Register(index(&self.scan.registers)),
             Root::Input => Source::Input(index(&self.scan.inputs)),
-            Root::Output | Root::Ref(_) => panic!("verified and checked: never loaded"),
+            Root::Output | Root::Ref(_) | Root::Local(_) => {
+                panic!("verified and checked: never loaded")
+            }
         };
         let net = self.net().source(source, width);
         Word { net, signed }
@@ -369,7 +373,7 @@ impl Lowering<'_> {
             // Outputs start each scan as they are in the byte region: this is not readable, so a
             // bit store to an output without a whole store before it keeps 0.
             Root::Output if !self.scan.memory.contains_key(leaf) => self.net().constant(bits, 0),
-            Root::Output | Root::State | Root::Input | Root::Ref(_) => {
+            Root::Output | Root::State | Root::Input | Root::Ref(_) | Root::Local(_) => {
                 let word = self.leaf(leaf);
                 self.fit(word, bits)
             }

@@ -8,14 +8,15 @@
 //! * A scan is transactional: after a fault state and outputs are as before it, and the next
 //!   `step` instruction still counts from the last scan that ended well.
 //! * A scan ends: each block costs *fuel*, and running out of it is the fault `bound`.
-//! * Calls use a stack of frames of our own; the acyclic call graph bounds its depth.
+//! * Calls use a stack of frames of our own, and locals one of bytes; the acyclic call graph bounds
+//!   their depth.
 
 mod cost;
 mod machine;
 mod memory;
 mod route;
 
-use cost::worst_case_cost;
+use cost::{Costs, worst_case_cost};
 use iecc_ir::{FuncId, Image, Module, Region, Terminator, Verified};
 use iecc_target::{Engine, Fault, region_bytes};
 use machine::{Machine, Scan};
@@ -30,6 +31,7 @@ pub const DEFAULT_FUEL: u64 = 100_000_000;
 pub struct Interpreter {
     module: Module,
     routes: Routes,
+    costs: Costs,
     state: Vec<u8>,
     output_len: usize,
     input_len: usize,
@@ -44,6 +46,7 @@ pub struct Interpreter {
 impl Interpreter {
     /// An interpreter in the initial state of the module's image.
     pub fn new(module: Verified<'_>) -> Self {
+        let costs = Costs::new(&module);
         Self {
             routes: Routes::new(&module),
             state: module.image.bytes().to_vec(),
@@ -51,7 +54,8 @@ impl Interpreter {
             input_len: region_bytes(&module, Region::Input).len(),
             last_ns: None,
             fuel: DEFAULT_FUEL,
-            worst_case_cost: worst_case_cost(&module),
+            worst_case_cost: worst_case_cost(&module, &costs),
+            costs,
             has_faults: has_faults(&module),
             saved: (Vec::new(), Vec::new()),
             module: Module::clone(&module),
@@ -93,6 +97,7 @@ impl Interpreter {
         let scan = Scan {
             module: &self.module,
             routes: &self.routes,
+            costs: &self.costs,
             now_ns,
             last_ns: self.last_ns,
         };
@@ -100,6 +105,7 @@ impl Interpreter {
             state: &mut self.state,
             inputs,
             outputs,
+            locals: Vec::new(),
         };
         Machine::new(scan, memory, self.fuel, entry).run()
     }

@@ -1,12 +1,12 @@
 //! Executes one activation: a stack of frames over one register file.
 
-use crate::cost::block_cost;
-use crate::memory::{Address, Cell, Memory};
+use crate::cost::Costs;
+use crate::memory::{Address, Cell, Memory, Space};
 use crate::route::{Route, Routes};
 use iecc_ir::eval::{eval_binary, eval_compare, eval_convert, eval_elapsed, eval_unary};
 use iecc_ir::{
-    Block, BlockData, FaultCode, FuncId, Function, Index, Inst, InstData, Module, Region, Root,
-    Target, Terminator, Type, Value,
+    Block, BlockData, FaultCode, FuncId, Function, Index, Inst, InstData, Module, Root, Target,
+    Terminator, Type, Value,
 };
 use iecc_target::Fault;
 
@@ -15,6 +15,7 @@ use iecc_target::Fault;
 pub(crate) struct Scan<'p> {
     pub(crate) module: &'p Module,
     pub(crate) routes: &'p Routes,
+    pub(crate) costs: &'p Costs,
     pub(crate) now_ns: u64,
     /// The time of the scan before, if there was one.
     pub(crate) last_ns: Option<u64>,
@@ -25,31 +26,40 @@ pub(crate) struct Scan<'p> {
 struct Frame<'p> {
     id: FuncId,
     func: &'p Function,
+    /// The block being executed.
+    at: Block,
     block: &'p BlockData,
     /// The next instruction of the block.
     position: usize,
     /// Where its values begin in the register file.
     base: usize,
+    /// Where its locals begin.
+    local_base: usize,
     /// What its references refer to; `None` where an index left its bounds at the call.
     refs: Vec<Option<Address>>,
 }
 
 impl<'p> Frame<'p> {
-    /// At the start of a function, its values all 0.
+    /// At the start of a function, its values and locals all 0.
     fn enter(
-        module: &'p Module,
+        scan: Scan<'p>,
         id: FuncId,
         registers: &mut Vec<u64>,
+        locals: &mut Vec<u8>,
         refs: Vec<Option<Address>>,
     ) -> Self {
-        let (func, base) = (&module.funcs[id], registers.len());
+        let (func, base) = (&scan.module.funcs[id], registers.len());
         registers.resize(base + func.value_count(), 0);
+        let local_base = locals.len();
+        locals.resize(local_base + scan.routes.local_bytes(id), 0);
         Self {
             id,
             func,
+            at: func.entry(),
             block: func.block(func.entry()),
             position: 0,
             base,
+            local_base,
             refs,
         }
     }
@@ -70,9 +80,9 @@ pub(crate) struct Machine<'p, 'm> {
 
 impl<'p, 'm> Machine<'p, 'm> {
     /// At the start of `entry`, a function without parameters and results.
-    pub(crate) fn new(scan: Scan<'p>, memory: Memory<'m>, fuel: u64, entry: FuncId) -> Self {
+    pub(crate) fn new(scan: Scan<'p>, mut memory: Memory<'m>, fuel: u64, entry: FuncId) -> Self {
         let mut registers = Vec::new();
-        let frame = Frame::enter(scan.module, entry, &mut registers, Vec::new());
+        let frame = Frame::enter(scan, entry, &mut registers, &mut memory.locals, Vec::new());
         Self {
             scan,
             memory,
@@ -135,6 +145,20 @@ impl<'p, 'm> Machine<'p, 'm> {
             InstData::Store { value, .. } => {
                 return self.memory.store(self.cell(inst), self.value(*value));
             }
+            InstData::Copy { .. } => {
+                let [to, from] = self.scan.routes.of(self.frame.id, inst) else {
+                    panic!("a copy has two places")
+                };
+                let (to, from, bytes) = (self.address(to), self.address(from), to.bytes);
+                return self.memory.copy(to, from, bytes);
+            }
+            InstData::Clear { .. } => {
+                let [route] = self.scan.routes.of(self.frame.id, inst) else {
+                    panic!("a clear has one place")
+                };
+                let (to, bytes) = (self.address(route), route.bytes);
+                return self.memory.copy(to, None, bytes);
+            }
             InstData::Now => self.scan.now_ns,
             InstData::Elapsed { unit_ns, ty, .. } => self.elapsed(inst, *unit_ns, *ty),
             InstData::Step { unit_ns, ty } => {
@@ -157,7 +181,8 @@ impl<'p, 'm> Machine<'p, 'm> {
         let routes = self.scan.routes.of(self.frame.id, inst);
         let refs = routes.iter().map(|route| self.address(route)).collect();
         self.gather(args);
-        let callee = Frame::enter(self.scan.module, callee, &mut self.registers, refs);
+        let locals = &mut self.memory.locals;
+        let callee = Frame::enter(self.scan, callee, &mut self.registers, locals, refs);
         let caller = std::mem::replace(&mut self.frame, callee);
         self.callers.push(caller);
         self.scatter(&self.frame.block.params);
@@ -185,7 +210,8 @@ impl<'p, 'm> Machine<'p, 'm> {
             code,
             origin: block.terminator_origin,
         };
-        let left = self.fuel.checked_sub(block_cost(block.insts.len()));
+        let cost = self.scan.costs.of(self.frame.id, self.frame.at);
+        let left = self.fuel.checked_sub(cost);
         self.fuel = left.ok_or_else(|| fault(FaultCode::Bound))?;
         match terminator {
             Terminator::Jump(target) => self.jump(func, target),
@@ -219,6 +245,7 @@ impl<'p, 'm> Machine<'p, 'm> {
     }
 
     fn go_to(&mut self, func: &'p Function, block: Block) {
+        self.frame.at = block;
         self.frame.block = func.block(block);
         self.frame.position = 0;
     }
@@ -227,6 +254,7 @@ impl<'p, 'm> Machine<'p, 'm> {
     fn leave(&mut self, values: &[Value]) -> bool {
         self.gather(values);
         self.registers.truncate(self.frame.base);
+        self.memory.locals.truncate(self.frame.local_base);
         let Some(caller) = self.callers.pop() else {
             return true;
         };
@@ -257,9 +285,10 @@ impl<'p, 'm> Machine<'p, 'm> {
     /// Where a route ends; `None` if an index on it, or on that of its reference, is out of bounds.
     fn address(&self, route: &Route) -> Option<Address> {
         let mut address = match route.root {
-            Root::State => start_of(Region::State),
-            Root::Input => start_of(Region::Input),
-            Root::Output => start_of(Region::Output),
+            Root::State => start_of(Space::State, 0),
+            Root::Input => start_of(Space::Input, 0),
+            Root::Output => start_of(Space::Output, 0),
+            Root::Local(_) => start_of(Space::Locals, self.frame.local_base),
             Root::Ref(param) => self.frame.refs[param.as_u32() as usize]?,
         };
         address.offset += route.offset;
@@ -280,6 +309,9 @@ impl<'p, 'm> Machine<'p, 'm> {
     }
 }
 
-fn start_of(region: Region) -> Address {
-    Address { region, offset: 0 }
+fn start_of(space: Space, offset: usize) -> Address {
+    Address {
+        space,
+        offset: offset as u64,
+    }
 }

@@ -1,6 +1,7 @@
-//! The three regions as bytes.
+//! The three regions and the locals of active functions as bytes.
 
-use iecc_ir::{Region, Scalar, Type};
+use iecc_ir::{Scalar, Type};
+use std::ops::Range;
 
 /// Memory during a scan.
 #[derive(Debug)]
@@ -8,12 +9,23 @@ pub(crate) struct Memory<'a> {
     pub(crate) state: &'a mut [u8],
     pub(crate) inputs: &'a [u8],
     pub(crate) outputs: &'a mut [u8],
+    /// Those of a callee behind those of its caller.
+    pub(crate) locals: Vec<u8>,
 }
 
-/// A byte of a region.
+/// A piece of memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Space {
+    State,
+    Input,
+    Output,
+    Locals,
+}
+
+/// A byte of memory.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Address {
-    pub(crate) region: Region,
+    pub(crate) space: Space,
     pub(crate) offset: u64,
 }
 
@@ -49,20 +61,50 @@ impl Memory<'_> {
     }
 
     fn word(&self, address: Address, ty: Type) -> u64 {
-        let bytes = match address.region {
-            Region::State => &*self.state,
-            Region::Input => self.inputs,
-            Region::Output => &*self.outputs,
-        };
-        Scalar::read(bytes, address.offset as usize, ty).bits
+        Scalar::read(self.space(address.space), address.offset as usize, ty).bits
+    }
+
+    fn space(&self, space: Space) -> &[u8] {
+        match space {
+            Space::State => self.state,
+            Space::Input => self.inputs,
+            Space::Output => self.outputs,
+            Space::Locals => &self.locals,
+        }
+    }
+
+    fn space_mut(&mut self, space: Space) -> &mut [u8] {
+        match space {
+            Space::State => self.state,
+            Space::Output => self.outputs,
+            Space::Locals => &mut self.locals,
+            Space::Input => panic!("verified code does not store to inputs"),
+        }
+    }
+
+    /// Makes the bytes from `to` what those from `from` are now, or 0.
+    pub(crate) fn copy(&mut self, to: Option<Address>, from: Option<Address>, len: u64) {
+        let Some(to) = to else { return };
+        let target = range(to.offset, len);
+        match from {
+            None => self.space_mut(to.space)[target].fill(0),
+            Some(from) if from.space == to.space => {
+                let source = range(from.offset, len);
+                self.space_mut(to.space).copy_within(source, target.start);
+            }
+            Some(from) => {
+                let bytes = self.space(from.space)[range(from.offset, len)].to_vec();
+                self.space_mut(to.space)[target].copy_from_slice(&bytes);
+            }
+        }
     }
 
     fn set_word(&mut self, address: Address, ty: Type, bits: u64) {
-        let bytes = match address.region {
-            Region::State => &mut *self.state,
-            Region::Output => &mut *self.outputs,
-            Region::Input => panic!("verified code does not store to inputs"),
-        };
+        let bytes = self.space_mut(address.space);
         Scalar::new(ty, bits).write(bytes, address.offset as usize);
     }
+}
+
+fn range(offset: u64, len: u64) -> Range<usize> {
+    offset as usize..(offset + len) as usize
 }

@@ -1,9 +1,9 @@
 //! Places prepared for execution: a byte offset, and a stride for every index known only then.
 
-use cranelift_entity::SecondaryMap;
+use cranelift_entity::{PrimaryMap, SecondaryMap};
 use iecc_ir::{
-    FuncId, Function, Index, Inst, InstData, Layout, MemType, Module, Place, Projection, Root,
-    Type, Value,
+    FuncId, Function, Index, Inst, Layout, Local, MemType, Module, Place, Projection, Root, Type,
+    Value,
 };
 
 /// A step over array elements by an index known at run time.
@@ -23,22 +23,35 @@ pub(crate) struct Route {
     pub(crate) strides: Vec<Stride>,
     /// What lies there, or holds the bit.
     pub(crate) ty: MemType,
+    /// How many bytes that takes.
+    pub(crate) bytes: u64,
     pub(crate) bit: Option<Index>,
 }
 
 impl Route {
-    fn new(module: &Module, layout: &Layout, func: &Function, place: &Place) -> Self {
+    fn new(
+        module: &Module,
+        layout: &Layout,
+        func: &Function,
+        locals: &PrimaryMap<Local, u64>,
+        place: &Place,
+    ) -> Self {
         let start = module.root_type(func, place.root);
         let mut route = Self {
             root: place.root,
-            offset: 0,
+            offset: match place.root {
+                Root::Local(local) => locals[local],
+                Root::State | Root::Input | Root::Output | Root::Ref(_) => 0,
+            },
             strides: Vec::new(),
             ty: start.expect("verified roots exist"),
+            bytes: 0,
             bit: None,
         };
         for &step in &place.path {
             route.follow(module, layout, step);
         }
+        route.bytes = layout.size(&module.types, route.ty);
         route
     }
 
@@ -79,48 +92,44 @@ impl Route {
     }
 }
 
-/// The routes of all places of a module: one of a load, store or `elapsed`, one per reference of a
-/// call.
+/// The routes of all places of a module, and how large the locals of each function are.
 #[derive(Debug)]
-pub(crate) struct Routes(SecondaryMap<FuncId, SecondaryMap<Inst, Vec<Route>>>);
+pub(crate) struct Routes {
+    routes: SecondaryMap<FuncId, SecondaryMap<Inst, Vec<Route>>>,
+    local_bytes: SecondaryMap<FuncId, u64>,
+}
 
 impl Routes {
     pub(crate) fn new(module: &Module) -> Self {
         let layout = Layout::new(&module.types);
-        let mut routes = Self(SecondaryMap::new());
+        let mut all = Self {
+            routes: SecondaryMap::new(),
+            local_bytes: SecondaryMap::new(),
+        };
         for (id, func) in module.funcs.iter() {
+            let (locals, local_bytes) = layout.locals(&module.types, func);
+            all.local_bytes[id] = local_bytes;
             let insts = func
                 .layout
                 .iter()
                 .flat_map(|&block| &func.block(block).insts);
             for &inst in insts {
-                let places = places(func.inst(inst)).iter();
-                routes.0[id][inst] = places
-                    .map(|place| Route::new(module, &layout, func, place))
+                let places = func.inst(inst).places().into_iter();
+                all.routes[id][inst] = places
+                    .map(|place| Route::new(module, &layout, func, &locals, place))
                     .collect();
             }
         }
-        routes
+        all
     }
 
+    /// Those of an instruction, in text order.
     pub(crate) fn of(&self, func: FuncId, inst: Inst) -> &[Route] {
-        &self.0[func][inst]
+        &self.routes[func][inst]
     }
-}
 
-fn places(inst: &InstData) -> &[Place] {
-    match inst {
-        InstData::Load { place }
-        | InstData::Store { place, .. }
-        | InstData::Elapsed { place, .. } => std::slice::from_ref(place),
-        InstData::Call { refs, .. } => refs,
-        InstData::Const { .. }
-        | InstData::Unary { .. }
-        | InstData::Binary { .. }
-        | InstData::Compare { .. }
-        | InstData::Convert { .. }
-        | InstData::Select { .. }
-        | InstData::Now
-        | InstData::Step { .. } => &[],
+    /// Bytes of the locals of a function.
+    pub(crate) fn local_bytes(&self, func: FuncId) -> usize {
+        self.local_bytes[func] as usize
     }
 }

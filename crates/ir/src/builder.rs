@@ -1,9 +1,9 @@
 //! The builder front ends use: they name variables and never see block parameters.
 
 use crate::{
-    BinaryOp, Block, CompareOp, ConvertOp, FaultCode, FuncId, Function, InstData, MemType, Origin,
-    Place, RefParam, RefParamData, SsaConstruction, Target, Terminator, Type, UnaryOp, Value,
-    Variable,
+    BinaryOp, Block, CompareOp, ConvertOp, FaultCode, FuncId, Function, InstData, Local, LocalData,
+    MemType, Origin, Place, RefParam, RefParamData, SsaConstruction, Target, Terminator, Type,
+    UnaryOp, Value, Variable,
 };
 
 /// Builds one function, block by block.
@@ -39,6 +39,14 @@ impl FunctionBuilder {
     /// Adds a reference parameter.
     pub fn add_ref(&mut self, name: impl Into<String>, ty: MemType) -> RefParam {
         self.func.refs.push(RefParamData {
+            name: name.into(),
+            ty,
+        })
+    }
+
+    /// Adds memory of one activation, all 0 at its start.
+    pub fn local(&mut self, name: impl Into<String>, ty: MemType) -> Local {
+        self.func.locals.push(LocalData {
             name: name.into(),
             ty,
         })
@@ -171,6 +179,16 @@ impl FunctionBuilder {
     /// Stores a value.
     pub fn store(&mut self, place: Place, value: Value) {
         self.push(InstData::Store { place, value }, &[]);
+    }
+
+    /// Moves a whole scalar, struct or array between places of the same type.
+    pub fn copy(&mut self, to: Place, from: Place) {
+        self.push(InstData::Copy { to, from }, &[]);
+    }
+
+    /// Makes a whole scalar, struct or array 0.
+    pub fn clear(&mut self, place: Place) {
+        self.push(InstData::Clear { place }, &[]);
     }
 
     /// The time of the scan, `i64` nanoseconds.

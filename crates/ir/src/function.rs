@@ -23,6 +23,11 @@ entity_impl!(Inst, "inst");
 pub struct RefParam(u32);
 entity_impl!(RefParam, "ref");
 
+/// Memory of one activation of a function.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Local(u32);
+entity_impl!(Local, "local");
+
 /// What defines a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ValueDef {
@@ -47,6 +52,15 @@ pub struct RefParamData {
     pub ty: MemType,
 }
 
+/// Memory of one activation: a name and what it holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LocalData {
+    /// Name, unique among locals and references of its function.
+    pub name: String,
+    /// What it holds; all 0 whenever the function is entered.
+    pub ty: MemType,
+}
+
 /// The contents of a block.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct BlockData {
@@ -67,6 +81,8 @@ pub struct Function {
     pub name: String,
     /// Reference parameters.
     pub refs: PrimaryMap<RefParam, RefParamData>,
+    /// Memory of one activation: all 0 when the function is entered, gone when it is left.
+    pub locals: PrimaryMap<Local, LocalData>,
     /// Result types.
     pub results: Vec<Type>,
     /// The blocks that exist, in text order; the first is the entry. Blocks outside it are dead.
@@ -84,6 +100,7 @@ impl Function {
         Self {
             name: name.into(),
             refs: PrimaryMap::new(),
+            locals: PrimaryMap::new(),
             results,
             layout: Vec::new(),
             blocks: PrimaryMap::new(),

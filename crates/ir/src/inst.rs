@@ -63,6 +63,21 @@ pub enum InstData {
         /// The new value.
         value: Value,
     },
+    /// `copy to, from`: moves all that lies at one place to another of the same type, which may be a
+    /// struct or an array, as if everything were read before anything is written. Where an index of
+    /// `from` is out of bounds, zeros are moved; where one of `to` is, nothing happens.
+    Copy {
+        /// To where.
+        to: Place,
+        /// From where.
+        from: Place,
+    },
+    /// `clear place`: makes all that lies at a place 0; nothing happens where an index is out of
+    /// bounds.
+    Clear {
+        /// What becomes 0.
+        place: Place,
+    },
     /// The time of this scan, `i64` nanoseconds.
     Now,
     /// `elapsed place, unit`: how many boundaries of `unit_ns` lie between the time kept in the
@@ -106,7 +121,10 @@ impl InstData {
             Self::Unary { arg, .. } | Self::Convert { arg, .. } => vec![*arg],
             Self::Binary { args, .. } | Self::Compare { args, .. } => args.to_vec(),
             Self::Select { cond, args } => vec![*cond, args[0], args[1]],
-            Self::Load { place } | Self::Elapsed { place, .. } => place.values().collect(),
+            Self::Load { place } | Self::Elapsed { place, .. } | Self::Clear { place } => {
+                place.values().collect()
+            }
+            Self::Copy { to, from } => to.values().chain(from.values()).collect(),
             Self::Store { place, value } => place.values().chain([*value]).collect(),
             Self::Call { refs, args, .. } => refs
                 .iter()
@@ -126,8 +144,12 @@ impl InstData {
                 *cond = f(*cond);
                 *args = args.map(f);
             }
-            Self::Load { place } | Self::Elapsed { place, .. } => {
+            Self::Load { place } | Self::Elapsed { place, .. } | Self::Clear { place } => {
                 place.values_mut().for_each(|v| *v = f(*v));
+            }
+            Self::Copy { to, from } => {
+                let values = to.values_mut().chain(from.values_mut());
+                values.for_each(|v| *v = f(*v));
             }
             Self::Store { place, value } => {
                 place.values_mut().for_each(|v| *v = f(*v));
@@ -142,12 +164,53 @@ impl InstData {
         }
     }
 
-    /// The place the instruction loads, stores or renews; calls have several in their `refs`.
+    /// Every place the instruction names, in text order.
+    pub fn places(&self) -> Vec<&Place> {
+        match self {
+            Self::Load { place }
+            | Self::Store { place, .. }
+            | Self::Clear { place }
+            | Self::Elapsed { place, .. } => vec![place],
+            Self::Copy { to, from } => vec![to, from],
+            Self::Call { refs, .. } => refs.iter().collect(),
+            Self::Const { .. }
+            | Self::Unary { .. }
+            | Self::Binary { .. }
+            | Self::Compare { .. }
+            | Self::Convert { .. }
+            | Self::Select { .. }
+            | Self::Now
+            | Self::Step { .. } => Vec::new(),
+        }
+    }
+
+    /// Every place the instruction names, for changes, in text order.
+    pub fn places_mut(&mut self) -> Vec<&mut Place> {
+        match self {
+            Self::Load { place }
+            | Self::Store { place, .. }
+            | Self::Clear { place }
+            | Self::Elapsed { place, .. } => vec![place],
+            Self::Copy { to, from } => vec![to, from],
+            Self::Call { refs, .. } => refs.iter_mut().collect(),
+            Self::Const { .. }
+            | Self::Unary { .. }
+            | Self::Binary { .. }
+            | Self::Compare { .. }
+            | Self::Convert { .. }
+            | Self::Select { .. }
+            | Self::Now
+            | Self::Step { .. } => Vec::new(),
+        }
+    }
+
+    /// The place of one scalar or bit the instruction loads, stores or renews.
     pub fn place(&self) -> Option<&Place> {
         match self {
             Self::Load { place } | Self::Store { place, .. } | Self::Elapsed { place, .. } => {
                 Some(place)
             }
+            Self::Copy { .. } | Self::Clear { .. } => None,
             Self::Const { .. }
             | Self::Unary { .. }
             | Self::Binary { .. }
@@ -172,9 +235,12 @@ impl InstData {
             | Self::Select { .. }
             | Self::Now
             | Self::Step { .. } => true,
-            Self::Load { .. } | Self::Store { .. } | Self::Elapsed { .. } | Self::Call { .. } => {
-                false
-            }
+            Self::Load { .. }
+            | Self::Store { .. }
+            | Self::Copy { .. }
+            | Self::Clear { .. }
+            | Self::Elapsed { .. }
+            | Self::Call { .. } => false,
         }
     }
 

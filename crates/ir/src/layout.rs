@@ -3,11 +3,18 @@
 //! One layout for the interpreter and every compiled engine, so that states can be compared byte
 //! by byte. `i1` is one byte holding 0 or 1; padding is 0.
 
-use crate::{Index, MemType, Place, Projection, StructId, Type, TypeTable};
+use crate::{
+    Function, Index, InstData, Local, MemType, Module, Place, PlaceType, Projection, StructId,
+    Type, TypeTable,
+};
 use cranelift_entity::PrimaryMap;
 
 /// Largest region a program may have.
 pub const MAX_REGION_BYTES: u64 = 1 << 30;
+
+/// What the locals of all functions of a program may take together. As no function calls itself,
+/// each is active at most once, so no engine needs more.
+pub const MAX_LOCAL_BYTES: u64 = 1 << 27;
 
 #[derive(Debug, Clone)]
 struct StructLayout {
@@ -78,6 +85,32 @@ impl Layout {
     /// Byte offset of a field.
     pub fn field_offset(&self, id: StructId, field: u32) -> u64 {
         self.structs[id].offsets[field as usize]
+    }
+
+    /// Byte offset of every local in the memory of an activation, aligned for 8-byte values, and the
+    /// size of that memory.
+    pub fn locals(&self, types: &TypeTable, func: &Function) -> (PrimaryMap<Local, u64>, u64) {
+        let (mut offsets, mut size) = (PrimaryMap::with_capacity(func.locals.len()), 0u64);
+        for data in func.locals.values() {
+            offsets.push(size);
+            let bytes = round_up(self.size(types, data.ty), 8);
+            size = size.saturating_add(bytes);
+        }
+        (offsets, size)
+    }
+
+    /// Bytes that a `copy` or `clear` of a verified module writes; 0 for other instructions, whose
+    /// work does not depend on types.
+    pub fn moved_bytes(&self, module: &Module, func: &Function, data: &InstData) -> u64 {
+        let (InstData::Copy { to: place, .. } | InstData::Clear { place }) = data else {
+            return 0;
+        };
+        let start = module.root_type(func, place.root);
+        let found = start.and_then(|start| Place::walk(&module.types, start, &place.path));
+        match found {
+            Some(PlaceType::Mem(ty)) => self.size(&module.types, ty),
+            Some(PlaceType::Bit) | None => panic!("verified places are memory"),
+        }
     }
 
     /// Byte offset and type of a static path from `start`, and the bit number if it ends in one.

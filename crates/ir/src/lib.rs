@@ -8,7 +8,8 @@
 //!   Structs and arrays exist in memory only.
 //! * **Control** is basic blocks with parameters and one [`Terminator`] each. Any graph is legal.
 //! * **Memory** is reached through [`Place`]s only: a root plus `.field`, `[index]` and bit
-//!   projections. There are no pointers, so two places overlap only if one is a prefix of the
+//!   projections. A root is a region, a reference parameter, or a local: memory of one activation of
+//!   a function, 0 when it begins. There are no pointers, so two places overlap only if one is a prefix of the
 //!   other, up to indices.
 //! * **Every operation is total**; `ops.rs` is the one table that says what each computes, and
 //!   [`eval`] computes it, for the interpreter and for passes that fold. A language error is an
@@ -38,10 +39,12 @@ mod verify;
 
 pub use builder::FunctionBuilder;
 pub use fault::FaultCode;
-pub use function::{Block, BlockData, Function, Inst, RefParam, RefParamData, Value, ValueDef};
+pub use function::{
+    Block, BlockData, Function, Inst, Local, LocalData, RefParam, RefParamData, Value, ValueDef,
+};
 pub use image::{Image, Scalar};
 pub use inst::{InstData, Target, Terminator};
-pub use layout::{Layout, MAX_REGION_BYTES};
+pub use layout::{Layout, MAX_LOCAL_BYTES, MAX_REGION_BYTES};
 pub use module::{FuncId, Module, Origin, OriginData, Region};
 pub use ops::{BinaryOp, CompareOp, ConvertOp, OperandClass, UnaryOp};
 pub use place::{Index, Place, PlaceType, Projection, Root};

@@ -78,6 +78,7 @@ impl Module {
             Root::Input => Some(MemType::Struct(self.input)),
             Root::Output => Some(MemType::Struct(self.output)),
             Root::Ref(param) => func.refs.get(param).map(|data| data.ty),
+            Root::Local(local) => func.locals.get(local).map(|data| data.ty),
         }
     }
 

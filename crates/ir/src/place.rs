@@ -1,6 +1,6 @@
 //! Places: the only way to memory.
 
-use crate::{MemType, RefParam, StructId, Type, TypeTable, Value};
+use crate::{Local, MemType, RefParam, StructId, Type, TypeTable, Value};
 
 /// Where a place begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -13,6 +13,9 @@ pub enum Root {
     Output,
     /// A reference parameter of the function.
     Ref(RefParam),
+    /// Memory of this activation of the function. It is no part of the state and of no other local,
+    /// nor do the function's own references refer to it.
+    Local(Local),
 }
 
 /// An array index or bit number.

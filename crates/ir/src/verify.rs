@@ -1,10 +1,11 @@
 //! The rules a module keeps. Everything behind the verifier relies on them.
 //!
 //! Module
-//!  1. Names of structs, of fields in a struct, of functions, of reference parameters and (ignoring
-//!     ASCII case) of aliases are unique; no reference is called `state`, `input` or `output`.
-//!  2. Arrays have at least one element; each region has at most `MAX_REGION_BYTES`; the image has
-//!     the size of the state region and `i1` bytes in it are 0 or 1.
+//!  1. Names of structs, of fields in a struct, of functions, of reference parameters and locals of a
+//!     function and (ignoring ASCII case) of aliases are unique; no reference or local is called
+//!     `state`, `input` or `output`.
+//!  2. Arrays have at least one element; each region has at most `MAX_REGION_BYTES`, the locals of all
+//!     functions together have at most `MAX_LOCAL_BYTES`; the image has the size of the state region and `i1` bytes in it are 0 or 1.
 //!  3. `scan` and `prescan` have no parameters and no results.
 //!  4. Aliases are static places of the state.
 //!  5. No function calls itself, directly or through others.
@@ -22,17 +23,18 @@
 //! Memory and time
 //! 12. A place follows its types; constant indices and bits are inside the bounds; index values are
 //!     `i32`.
-//! 13. Loads and stores move one scalar or bit of the result's or operand's type. Inputs are not
-//!     stored to, outputs not loaded.
-//! 14. A call passes one place per reference, of the same type, of the state or a reference, and
-//!     not ending in a bit; one value per parameter; its results are those of the callee.
-//! 15. `elapsed` keeps its time in an `i64` of the state or a reference; units are at least 1 ns;
+//! 13. Loads and stores move one scalar or bit of the result's or operand's type; `copy` moves and
+//!     `clear` makes 0 whole scalars, structs and arrays, not bits, between places of one type.
+//!     Inputs are not written to, outputs not read.
+//! 14. A call passes one place per reference, of the same type, of the state, a reference or a local,
+//!     and not ending in a bit; one value per parameter; its results are those of the callee.
+//! 15. `elapsed` keeps its time in an `i64` of the state, a reference or a local; units are at least 1 ns;
 //!     `elapsed` and `step` give `i32` or `i64`.
 
 use crate::analysis::{Cfg, Dominators};
 use crate::{
-    Block, FuncId, Function, Inst, InstData, Layout, MAX_REGION_BYTES, MemType, Module, Origin,
-    Place, PlaceType, Projection, Root, Target, Terminator, Type, Value, ValueDef,
+    Block, FuncId, Function, Inst, InstData, Layout, MAX_LOCAL_BYTES, MAX_REGION_BYTES, MemType,
+    Module, Origin, Place, PlaceType, Projection, Root, Target, Terminator, Type, Value, ValueDef,
 };
 use cranelift_entity::{EntityRef, EntitySet, SecondaryMap};
 use std::collections::BTreeSet;
@@ -164,6 +166,7 @@ impl ModuleCheck<'_, '_> {
                 );
             }
         }
+        self.local_bytes(&layout);
         let size = layout.size(&module.types, MemType::Struct(module.state));
         if size != module.image.bytes().len() as u64 {
             self.error(
@@ -175,6 +178,19 @@ impl ModuleCheck<'_, '_> {
             );
         } else if size <= MAX_REGION_BYTES {
             self.image_bits(&layout);
+        }
+    }
+
+    fn local_bytes(&mut self, layout: &Layout) {
+        let module = self.module;
+        let sizes = module.funcs.values();
+        let sizes = sizes.map(|func| layout.locals(&module.types, func).1);
+        let size = sizes.fold(0, u64::saturating_add);
+        if size > MAX_LOCAL_BYTES {
+            self.error(
+                2,
+                format!("all locals have {size} bytes, at most {MAX_LOCAL_BYTES} are allowed"),
+            );
         }
     }
 
@@ -330,11 +346,12 @@ impl<'m, 'e> FunctionCheck<'m, 'e> {
     fn shape(&mut self) {
         let func = self.func;
         let mut names = BTreeSet::from(["state", "input", "output"]);
-        for param in func.refs.values() {
-            if !names.insert(&param.name) {
+        let refs = func.refs.values().map(|data| &data.name);
+        for name in refs.chain(func.locals.values().map(|data| &data.name)) {
+            if !names.insert(name) {
                 self.error(
                     1,
-                    format!("reference {:?} has a name that is taken", param.name),
+                    format!("reference or local {name:?} has a name that is taken"),
                 );
             }
         }
@@ -492,20 +509,22 @@ impl<'m, 'e> FunctionCheck<'m, 'e> {
                 self.same(10, "select", &types[1..], &types[..1]);
                 self.same(10, "select", &results, &types[..1]);
             }
+            InstData::Copy { to, from } => self.copy(to, from, &results),
+            InstData::Clear { place } => {
+                self.memory_place(place);
+                self.written(place);
+                self.same(13, "clear", &results, &[]);
+            }
             InstData::Load { place } => {
                 let loaded = self.scalar_place(place);
                 self.same(13, "load", &results, loaded.as_slice());
-                if place.root == Root::Output {
-                    self.error(13, "an output is loaded".to_owned());
-                }
+                self.read(place);
             }
             InstData::Store { place, value } => {
                 let stored = self.scalar_place(place);
                 self.same(13, "store", &[self.ty(*value)], stored.as_slice());
                 self.same(13, "store", &results, &[]);
-                if place.root == Root::Input {
-                    self.error(13, "an input is stored to".to_owned());
-                }
+                self.written(place);
             }
             InstData::Now => self.same(10, "now", &results, &[Type::I64]),
             InstData::Elapsed { place, unit_ns, ty } => {
@@ -516,12 +535,13 @@ impl<'m, 'e> FunctionCheck<'m, 'e> {
                     kept.as_slice(),
                     &[Type::I64],
                 );
-                if !matches!(place.root, Root::State | Root::Ref(_))
+                if !matches!(place.root, Root::State | Root::Ref(_) | Root::Local(_))
                     || matches!(place.path.last(), Some(Projection::Bit(_)))
                 {
                     self.error(
                         15,
-                        "elapsed keeps its time neither in the state nor in a reference".to_owned(),
+                        "elapsed keeps its time neither in the state nor in a reference or local"
+                            .to_owned(),
                     );
                 }
                 self.unit(*unit_ns, *ty, &results);
@@ -569,6 +589,43 @@ impl<'m, 'e> FunctionCheck<'m, 'e> {
             self.error(13, "a whole struct or array is moved".to_owned());
         }
         scalar
+    }
+
+    fn read(&mut self, place: &Place) {
+        if place.root == Root::Output {
+            self.error(13, "an output is loaded".to_owned());
+        }
+    }
+
+    fn written(&mut self, place: &Place) {
+        if place.root == Root::Input {
+            self.error(13, "an input is stored to".to_owned());
+        }
+    }
+
+    /// What lies at a place that must not be a bit.
+    fn memory_place(&mut self, place: &Place) -> Option<MemType> {
+        match self.place_type(place)? {
+            PlaceType::Mem(ty) => Some(ty),
+            PlaceType::Bit => {
+                self.error(13, "a single bit is copied or cleared".to_owned());
+                None
+            }
+        }
+    }
+
+    fn copy(&mut self, to: &Place, from: &Place, results: &[Type]) {
+        if let (Some(to), Some(from)) = (self.memory_place(to), self.memory_place(from))
+            && to != from
+        {
+            self.error(
+                13,
+                "copy moves between places of different types".to_owned(),
+            );
+        }
+        self.read(from);
+        self.written(to);
+        self.same(13, "copy", results, &[]);
     }
 
     fn call(&mut self, callee: FuncId, refs: &[Place], args: &[Value], results: &[Type]) {

@@ -82,6 +82,8 @@ impl Library {
                     | InstData::Select { .. }
                     | InstData::Load { .. }
                     | InstData::Store { .. }
+                    | InstData::Copy { .. }
+                    | InstData::Clear { .. }
                     | InstData::Now
                     | InstData::Step { .. } => {}
                 }

@@ -3,7 +3,10 @@
 //! After it, every instruction left either has an effect or has a result that matters, every block
 //! is reachable, every block parameter is read, and every function is called. "Matters" is found
 //! optimistically, so values that only feed each other around a loop go too. Stores stay: whether
-//! a leaf of the state matters is a question about all scans, which the pass `state` answers.
+//! a leaf of the state matters is a question about all scans, which the pass `state` answers. But a
+//! local that nothing reads goes with all stores to it.
+
+mod locals;
 
 use crate::functions::remove_uncalled;
 use crate::rewrite::remove_unreachable;
@@ -16,6 +19,9 @@ pub(crate) fn dce(module: &mut Module) {
     for func in module.funcs.values_mut() {
         remove_unreachable(func);
         sweep(func);
+        if locals::remove_unread(func) {
+            sweep(func);
+        }
     }
     remove_uncalled(module);
 }

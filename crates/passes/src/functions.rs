@@ -48,6 +48,15 @@ pub(crate) fn calls(func: &Function) -> impl Iterator<Item = FuncId> + '_ {
     })
 }
 
+/// The name, with as many primes as make it new.
+pub(crate) fn unique(name: &str, taken: &BTreeSet<String>) -> String {
+    let mut name = name.to_owned();
+    while taken.contains(&name) {
+        name.push('\'');
+    }
+    name
+}
+
 /// Drops the functions that neither `scan` nor `prescan` lead to.
 pub(crate) fn remove_uncalled(module: &mut Module) {
     let mut called = EntitySet::<FuncId>::new();

@@ -4,14 +4,17 @@
 //! bound on copied instructions is reached: then the calls that are left are still right, and
 //! hardware refuses them. A reference parameter becomes the place that is passed, so that all
 //! places begin at a region. An instruction keeps its origin; one without takes that of the call.
-//! Functions nobody calls any more are dropped.
+//! Functions nobody calls any more are dropped. Locals of a callee become locals of the caller, one
+//! set for all calls of the same function, and are cleared where the callee is entered.
 
 use crate::functions;
-use cranelift_entity::{EntityRef, SecondaryMap, packed_option::PackedOption};
-use iecc_ir::analysis::Cfg;
+use cranelift_entity::{EntityRef, EntitySet, SecondaryMap, packed_option::PackedOption};
+use iecc_ir::analysis::{Cfg, Dominators, Loops};
 use iecc_ir::{
-    Block, FuncId, Function, Inst, InstData, Module, Origin, Place, Root, Target, Terminator, Value,
+    Block, FuncId, Function, Inst, InstData, Layout, Local, LocalData, MAX_LOCAL_BYTES, Module,
+    Origin, Place, Root, Target, Terminator, Value,
 };
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Instructions one function may grow to, and how many may be copied in all. Calls that fan out
 /// over a few dozen levels would otherwise fill any memory.
@@ -24,9 +27,13 @@ const SMALL_IF_CALLED_ONCE: usize = 1 << 10;
 /// What a function may grow to by `inline_small`; machine code generators dislike giants.
 const SMALL_FUNCTION: usize = 1 << 14;
 
+/// Most bytes of locals of a function that `inline_small` takes: they are cleared also where the
+/// call is not reached.
+const SMALL_LOCALS: u64 = 1 << 10;
+
 /// Inlines every call.
 pub(crate) fn inline(module: &mut Module) {
-    Inliner::new(MAX_FUNCTION).run(module, &|_, _| true);
+    Inliner::new(MAX_FUNCTION, MAX_LOCAL_BYTES).run(module, &|_, _| true);
 }
 
 /// Inlines calls of small functions, and of larger ones that are called in one place only.
@@ -35,7 +42,7 @@ pub(crate) fn inline_small(module: &mut Module) {
     for func in module.funcs.values() {
         functions::calls(func).for_each(|callee| count[callee] += 1);
     }
-    Inliner::new(SMALL_FUNCTION).run(module, &|callee, size| {
+    Inliner::new(SMALL_FUNCTION, SMALL_LOCALS).run(module, &|callee, size| {
         size <= SMALL || (count[callee] == 1 && size <= SMALL_IF_CALLED_ONCE)
     });
 }
@@ -45,22 +52,34 @@ struct Inliner {
     sizes: SecondaryMap<FuncId, usize>,
     max_function: usize,
     copies_left: usize,
+    /// Bytes of the locals of each finished function.
+    local_bytes: SecondaryMap<FuncId, u64>,
+    max_locals: u64,
+    locals_left: u64,
 }
 
 impl Inliner {
-    fn new(max_function: usize) -> Self {
+    fn new(max_function: usize, max_locals: u64) -> Self {
         Self {
             sizes: SecondaryMap::new(),
             max_function,
             copies_left: MAX_COPIED,
+            local_bytes: SecondaryMap::new(),
+            max_locals,
+            locals_left: 0,
         }
     }
 
     fn run(&mut self, module: &mut Module, wanted: &dyn Fn(FuncId, usize) -> bool) {
+        let layout = Layout::new(&module.types);
+        let bytes = |func| layout.locals(&module.types, func).1;
+        let all = module.funcs.values().map(bytes).sum();
+        self.locals_left = MAX_LOCAL_BYTES.saturating_sub(all);
         for id in functions::callees_first(module) {
             let mut size = size(&module.funcs[id]);
             let before = size;
-            let chosen = self.choose(&module.funcs[id], &mut size, wanted);
+            self.local_bytes[id] = layout.locals(&module.types, &module.funcs[id]).1;
+            let chosen = self.choose(id, &module.funcs[id], &mut size, wanted);
             if chosen.contains(&true) {
                 module.funcs[id] = Expansion::new(module, &module.funcs[id], &chosen).run();
                 self.copies_left -= size - before;
@@ -72,19 +91,33 @@ impl Inliner {
 
     /// For every call in layout order, whether to inline it; `size` grows accordingly.
     fn choose(
-        &self,
+        &mut self,
+        id: FuncId,
         func: &Function,
         size: &mut usize,
         wanted: &dyn Fn(FuncId, usize) -> bool,
     ) -> Vec<bool> {
         let limit = self.max_function.min(*size + self.copies_left);
+        let mut with_locals = BTreeSet::new();
         functions::calls(func)
             .map(|callee| {
                 // One for the jump, so that empty bodies count too.
                 let grown = *size + self.sizes[callee] + 1;
-                let chosen = grown <= limit && wanted(callee, self.sizes[callee]);
+                let locals = self.local_bytes[callee];
+                let more_locals = if with_locals.contains(&callee) {
+                    0
+                } else {
+                    locals
+                };
+                let chosen = grown <= limit
+                    && locals <= self.max_locals
+                    && more_locals <= self.locals_left
+                    && wanted(callee, self.sizes[callee]);
                 if chosen {
                     *size = grown;
+                    with_locals.insert(callee);
+                    self.locals_left -= more_locals;
+                    self.local_bytes[id] += more_locals;
                 }
                 chosen
             })
@@ -108,17 +141,25 @@ struct Copied<'f> {
     values: SecondaryMap<Value, PackedOption<Value>>,
     /// Empty for the caller itself, whose references stay.
     refs: Vec<Place>,
+    /// What its locals became; empty for the caller itself, whose locals stay.
+    locals: Vec<Local>,
     /// For instructions without their own.
     origin: Option<Origin>,
 }
 
 impl<'f> Copied<'f> {
-    fn new(from: &'f Function, refs: Vec<Place>, origin: Option<Origin>) -> Self {
+    fn new(
+        from: &'f Function,
+        refs: Vec<Place>,
+        locals: Vec<Local>,
+        origin: Option<Origin>,
+    ) -> Self {
         Self {
             from,
             blocks: SecondaryMap::with_capacity(from.block_count()),
             values: SecondaryMap::with_capacity(from.value_count()),
             refs,
+            locals,
             origin,
         }
     }
@@ -138,7 +179,11 @@ impl<'f> Copied<'f> {
             Root::Ref(param) if !self.refs.is_empty() => {
                 self.refs[param.index()].clone().join(&mapped.path)
             }
-            Root::Ref(_) | Root::State | Root::Input | Root::Output => mapped,
+            Root::Local(local) if !self.locals.is_empty() => Place {
+                root: Root::Local(self.locals[local.index()]),
+                path: mapped.path,
+            },
+            Root::Ref(_) | Root::Local(_) | Root::State | Root::Input | Root::Output => mapped,
         }
     }
 
@@ -150,6 +195,13 @@ impl<'f> Copied<'f> {
             InstData::Store { place, value } => InstData::Store {
                 place: self.place(place),
                 value: self.value(*value),
+            },
+            InstData::Copy { to, from } => InstData::Copy {
+                to: self.place(to),
+                from: self.place(from),
+            },
+            InstData::Clear { place } => InstData::Clear {
+                place: self.place(place),
             },
             InstData::Elapsed { place, unit_ns, ty } => InstData::Elapsed {
                 place: self.place(place),
@@ -195,12 +247,17 @@ struct Expansion<'m> {
     /// The layout of the result; blocks of a callee stand where its call stood.
     order: Vec<Block>,
     chosen: SecondaryMap<Inst, bool>,
+    /// The locals that stand for those of a callee.
+    locals: BTreeMap<FuncId, Vec<Local>>,
+    /// Blocks of the caller that may run more than once; `None` for all.
+    repeated: Option<EntitySet<Block>>,
 }
 
 impl<'m> Expansion<'m> {
     fn new(module: &'m Module, caller: &'m Function, chosen: &[bool]) -> Self {
         let mut out = Function::new(caller.name.clone(), caller.results.clone());
         out.refs = caller.refs.clone();
+        out.locals = caller.locals.clone();
         let insts = caller
             .layout
             .iter()
@@ -216,13 +273,16 @@ impl<'m> Expansion<'m> {
             out,
             order: Vec::new(),
             chosen: by_inst,
+            locals: BTreeMap::new(),
+            repeated: None,
         }
     }
 
     fn run(mut self) -> Function {
         let caller = self.caller;
         let cfg = Cfg::new(caller);
-        let mut map = Copied::new(caller, Vec::new(), None);
+        self.repeated = repeated(&cfg);
+        let mut map = Copied::new(caller, Vec::new(), Vec::new(), None);
         self.create_blocks(&mut map, cfg.reverse_postorder());
         for &block in cfg.reverse_postorder() {
             self.caller_block(&mut map, block);
@@ -254,7 +314,9 @@ impl<'m> Expansion<'m> {
             let InstData::Call { func, refs, args } = map.inst(caller.inst(inst)) else {
                 panic!("only calls are chosen")
             };
-            let callee = Copied::new(&self.module.funcs[func], refs, caller.origin(inst));
+            let origin = caller.origin(inst);
+            let locals = self.locals_of(func, block, current, origin);
+            let callee = Copied::new(&self.module.funcs[func], refs, locals, origin);
             let (next, results) = self.expand(callee, current, &args);
             current = next;
             bind(&mut map.values, caller.results_of(inst), &results);
@@ -262,6 +324,42 @@ impl<'m> Expansion<'m> {
         let terminator = map.terminator(caller.terminator(block));
         let origin = caller.block(block).terminator_origin;
         self.out.set_terminator(current, terminator, origin);
+    }
+
+    /// The locals for an expansion of a callee at the end of `current`, all 0 there.
+    fn locals_of(
+        &mut self,
+        callee: FuncId,
+        block: Block,
+        current: Block,
+        origin: Option<Origin>,
+    ) -> Vec<Local> {
+        let func = &self.module.funcs[callee];
+        let is_first = !self.locals.contains_key(&callee);
+        if is_first {
+            let taken = self.out.locals.values().map(|data| data.name.clone());
+            let taken = taken.chain(self.out.refs.values().map(|data| data.name.clone()));
+            let taken: BTreeSet<String> = taken.collect();
+            let new = func.locals.values().map(|data| {
+                let name = functions::unique(&format!("{}.{}", func.name, data.name), &taken);
+                self.out.locals.push(LocalData { name, ty: data.ty })
+            });
+            let new = new.collect();
+            self.locals.insert(callee, new);
+        }
+        let locals = self.locals[&callee].clone();
+        let once = self
+            .repeated
+            .as_ref()
+            .is_some_and(|repeated| !repeated.contains(block));
+        if !(is_first && once) {
+            for &local in &locals {
+                let place = Place::root(Root::Local(local));
+                self.out
+                    .append_inst(current, InstData::Clear { place }, &[], origin);
+            }
+        }
+        locals
     }
 
     fn copy_inst(&mut self, map: &mut Copied<'_>, inst: Inst, to: Block) {
@@ -352,6 +450,19 @@ impl<'m> Expansion<'m> {
         }
         (join, params)
     }
+}
+
+/// The blocks that may run more than once in an activation; `None` if it may be any.
+fn repeated(cfg: &Cfg) -> Option<EntitySet<Block>> {
+    let loops = Loops::new(cfg, &Dominators::new(cfg));
+    if loops.irreducible.is_some() {
+        return None;
+    }
+    let mut blocks = EntitySet::new();
+    for block in loops.natural.iter().flat_map(|each| &each.blocks) {
+        blocks.insert(*block);
+    }
+    Some(blocks)
 }
 
 fn bind(map: &mut SecondaryMap<Value, PackedOption<Value>>, from: &[Value], to: &[Value]) {

@@ -42,10 +42,13 @@ impl ScanForm {
             let (place, load, store) = match func.inst(inst) {
                 InstData::Load { place } => (place, Some(func.result(inst)), None),
                 InstData::Store { place, value } => (place, None, Some(*value)),
-                InstData::Elapsed { .. } | InstData::Call { .. } => return None,
+                InstData::Elapsed { .. }
+                | InstData::Copy { .. }
+                | InstData::Clear { .. }
+                | InstData::Call { .. } => return None,
                 _ => continue,
             };
-            if !place.is_static() || matches!(place.root, Root::Ref(_)) {
+            if !place.is_static() || matches!(place.root, Root::Ref(_) | Root::Local(_)) {
                 return None;
             }
             if place.root == Root::State {

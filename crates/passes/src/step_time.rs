@@ -54,7 +54,10 @@ fn clocks(module: &Module) -> BTreeMap<Place, u64> {
                     *unit = None;
                 }
             }
-            data => data.place().into_iter().for_each(|place| others.add(place)),
+            data => data
+                .places()
+                .into_iter()
+                .for_each(|place| others.add(place)),
         }
     }
     let starts_at_zero = |place: &Place| {

@@ -7,7 +7,7 @@ use crate::rng::Rng;
 use crate::stimulus::random_bits;
 use iecc_ir::{
     BinaryOp, Block, CompareOp, FaultCode, Function, FunctionBuilder, MemType, Module, Origin,
-    Place, Root, Type, Value, Variable,
+    Place, PlaceType, Root, Type, Value, Variable,
 };
 
 /// How deep statements nest.
@@ -58,13 +58,22 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Starts the function with these references, parameters and results.
-    pub(super) fn begin(&mut self, refs: &[MemType], params: &[Type], results: &[Type]) {
+    /// Starts the function with these references, locals, parameters and results.
+    pub(super) fn begin(
+        &mut self,
+        refs: &[MemType],
+        locals: &[MemType],
+        params: &[Type],
+        results: &[Type],
+    ) {
         self.builder = FunctionBuilder::new(self.name.as_str(), params, results);
         for (index, &ty) in refs.iter().enumerate() {
             self.builder.add_ref(format!("r{index}"), ty);
         }
-        self.routes = routes(self.module, refs);
+        for (index, &ty) in locals.iter().enumerate() {
+            self.builder.local(format!("l{index}"), ty);
+        }
+        self.routes = routes(self.module, refs, locals);
         self.results = results.to_vec();
         for (index, &ty) in params.iter().enumerate() {
             let param = self.builder.param(index);
@@ -137,7 +146,7 @@ impl<'a> Body<'a> {
         self.origin();
         let nest = depth > 0 && self.statements > 0;
         let cheap = self.cost < MAX_COST / 4;
-        match self.rng.below(22) {
+        match self.rng.below(25) {
             0..=2 => self.assign(),
             3..=5 => self.store(),
             6 | 7 => self.call(),
@@ -150,6 +159,8 @@ impl<'a> Body<'a> {
             16 | 17 if self.options.timers => self.timer(),
             18 | 19 => self.accumulate(),
             20 | 21 => self.overlap(),
+            22 | 23 => self.copy(),
+            24 => self.clear(),
             _ => self.assign(),
         }
     }
@@ -196,6 +207,28 @@ impl<'a> Body<'a> {
         let after = self.builder.binary(op, before, change);
         self.builder.store(place, after);
         self.spend(3);
+    }
+
+    /// Moves a scalar, struct or array; from a local as often as possible.
+    fn copy(&mut self) {
+        let wanted = self.rng.one_in(2);
+        let is_local = |route: &Route| !wanted || matches!(route.root, Root::Local(_));
+        let to =
+            self.place_and_end(|route| is_part(route) && !route.is_constant && is_local(route));
+        let Some((to, end)) = to else { return };
+        let from = self.place(|route| route.end == end && route.root != Root::Output);
+        if let Some(from) = from {
+            self.builder.copy(to, from);
+            self.spend(4);
+        }
+    }
+
+    fn clear(&mut self) {
+        let place = self.place(|route| is_part(route) && !route.is_constant);
+        if let Some(place) = place {
+            self.builder.clear(place);
+            self.spend(2);
+        }
     }
 
     /// Loads a place before and after a store that may change it.
@@ -450,4 +483,10 @@ impl<'a> Body<'a> {
         let values = results.into_iter().map(|ty| self.value(ty)).collect();
         self.builder.ret(values);
     }
+}
+
+/// Memory, but not the whole state, which holds the times of timers.
+fn is_part(route: &Route) -> bool {
+    let is_state = route.root == Root::State && route.steps.is_empty();
+    matches!(route.end, PlaceType::Mem(_)) && !is_state
 }

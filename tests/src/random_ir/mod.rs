@@ -1,6 +1,6 @@
 //! Random modules that keep the verifier's rules: nested branches, switches, loops that end,
 //! graphs that no structured program has, calls with references that alias, every value operation,
-//! words and their bits, indices in and out of bounds, timers, and now and then a fault.
+//! words and their bits, whole structs and arrays, locals, indices in and out of bounds, timers, and now and then a fault.
 //!
 //! A seed and options always give the same module. A scan of one takes at most some
 //! [`MAX_COST`] instructions, so fuel plays no part.
@@ -113,8 +113,9 @@ pub fn random_module(seed: u64, options: &Options) -> Module {
         let refs = types.random_refs(rng);
         let params = types.random_values(rng, 3);
         let results = types.random_values(rng, 2);
+        let locals = types.random_locals(rng);
         let mut body = Body::new(&module, &callees, options, rng, &format!("f{index}"));
-        body.begin(&refs, &params, &results);
+        body.begin(&refs, &locals, &params, &results);
         let (func, cost) = body.finish();
         let id = module.funcs.push(func);
         callees.push(Signature {
@@ -126,8 +127,9 @@ pub fn random_module(seed: u64, options: &Options) -> Module {
         });
     }
     for name in ["prescan", "scan"] {
+        let locals = types.random_locals(rng);
         let mut body = Body::new(&module, &callees, options, rng, name);
-        body.begin(&[], &[], &[]);
+        body.begin(&[], &locals, &[], &[]);
         let (func, _) = body.finish();
         module.scan = module.funcs.push(func);
         if name == "prescan" {

@@ -1,7 +1,7 @@
 //! All places a function can name, by what lies there.
 
 use super::types::{LAST, timer_field};
-use iecc_ir::{MemType, Module, PlaceType, RefParam, Root, Type};
+use iecc_ir::{Local, MemType, Module, PlaceType, RefParam, Root, Type};
 
 /// A step of a [`Route`].
 #[derive(Debug, Clone, Copy)]
@@ -27,7 +27,7 @@ impl Route {
     /// Whether it leads into memory that is kept from scan to scan and may be changed.
     pub(super) fn is_kept(&self) -> bool {
         match self.root {
-            Root::State | Root::Ref(_) => !self.is_constant,
+            Root::State | Root::Ref(_) | Root::Local(_) => !self.is_constant,
             Root::Input | Root::Output => false,
         }
     }
@@ -38,8 +38,8 @@ impl Route {
     }
 }
 
-/// Every route from every region and reference of a function, but for the times timers keep.
-pub(super) fn routes(module: &Module, refs: &[MemType]) -> Vec<Route> {
+/// Every route from every region, reference and local of a function, but for the times timers keep.
+pub(super) fn routes(module: &Module, refs: &[MemType], locals: &[MemType]) -> Vec<Route> {
     let regions = [
         (Root::State, module.state),
         (Root::Input, module.input),
@@ -49,9 +49,12 @@ pub(super) fn routes(module: &Module, refs: &[MemType]) -> Vec<Route> {
     for (root, id) in regions {
         Collector::new(module, root, &mut routes).collect(MemType::Struct(id));
     }
-    for (index, &ty) in refs.iter().enumerate() {
-        let root = Root::Ref(RefParam::from_u32(index as u32));
-        // The same chance for a reference as for the state, which has many more places.
+    let refs = (0..).zip(refs);
+    let refs = refs.map(|(index, &ty)| (Root::Ref(RefParam::from_u32(index)), ty));
+    let locals = (0..).zip(locals);
+    let locals = locals.map(|(index, &ty)| (Root::Local(Local::from_u32(index)), ty));
+    for (root, ty) in refs.chain(locals) {
+        // The same chance for a reference or local as for the state, which has many more places.
         for _ in 0..4 {
             Collector::new(module, root, &mut routes).collect(ty);
         }

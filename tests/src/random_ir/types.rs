@@ -69,6 +69,12 @@ impl RandomTypes {
             .collect()
     }
 
+    /// Types of locals: some functions have none, some structs and arrays.
+    pub(super) fn random_locals(&self, rng: &mut Rng) -> Vec<MemType> {
+        let count = rng.below(4);
+        (0..count).map(|_| rng.pick(&self.memory)).collect()
+    }
+
     pub(super) fn random_refs(&self, rng: &mut Rng) -> Vec<MemType> {
         let scalars = &self.memory[..self.values.len()];
         let count = rng.below(4);

@@ -158,6 +158,14 @@ impl Body<'_> {
 
     /// A place that fits, its indices filled in.
     pub(super) fn place(&mut self, fits: impl Fn(&Route) -> bool) -> Option<Place> {
+        Some(self.place_and_end(fits)?.0)
+    }
+
+    /// A place that fits, and what lies there.
+    pub(super) fn place_and_end(
+        &mut self,
+        fits: impl Fn(&Route) -> bool,
+    ) -> Option<(Place, PlaceType)> {
         let routes: Vec<usize> = (0..self.routes.len())
             .filter(|&i| fits(&self.routes[i]))
             .collect();
@@ -165,6 +173,7 @@ impl Body<'_> {
             return None;
         }
         let route = self.routes[self.rng.pick(&routes)].clone();
+        let end = route.end;
         let mut place = Place::root(route.root);
         for step in route.steps {
             place = match step {
@@ -173,7 +182,7 @@ impl Body<'_> {
                 Step::Bit(width) => place.bit(self.index(width)),
             };
         }
-        Some(place)
+        Some((place, end))
     }
 
     /// Mostly inside the bounds; a value may be anything.

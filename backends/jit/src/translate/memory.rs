@@ -13,13 +13,13 @@ use iecc_ir::{ArrayId, Index, MemType, Place, Projection, Root, Type, Value};
 
 /// Where a place lies.
 pub(super) struct Address {
-    base: clif::Value,
-    offset: i32,
-    flags: MemFlagsData,
+    pub(super) base: clif::Value,
+    pub(super) offset: i32,
+    pub(super) flags: MemFlagsData,
     /// An `i8` that says whether the place exists; `None` if it always does.
     pub(super) exists: Option<clif::Value>,
     /// What lies there; for a bit, the integer that holds it.
-    ty: MemType,
+    pub(super) ty: MemType,
     bit: Option<Index>,
 }
 
@@ -53,11 +53,15 @@ impl Translator<'_, '_> {
                 let base = self.context_field(pointer, ScanContext::OUTPUTS);
                 (base, self.regions.output)
             }
+            Root::Local(local) => {
+                let offset = self.local_offsets[local];
+                (self.local_base(offset), self.regions.locals)
+            }
             Root::Ref(param) => {
                 let mut base = self.reference(param);
                 if self.facts.absent_refs.contains(param) {
                     let present = self.ins().icmp_imm_s(IntCC::NotEqual, base, 0);
-                    // The element would lie in the state, so the state is large enough.
+                    // The engine keeps as many bytes there as the reference may read.
                     let state = self.state;
                     base = self.ins().select(present, base, state);
                     exists = Some(present);
@@ -207,7 +211,7 @@ impl Translator<'_, '_> {
     }
 
     /// Does something only if the place exists, and goes on behind it.
-    fn if_exists(&mut self, address: &Address, then: impl FnOnce(&mut Self)) {
+    pub(super) fn if_exists(&mut self, address: &Address, then: impl FnOnce(&mut Self)) {
         let Some(exists) = address.exists else {
             return then(self);
         };

@@ -5,6 +5,7 @@
 //! the fault, which every caller passes on at once. An `i1` is an `i8` that is 0 or 1. Blocks are
 //! translated in reverse postorder, so definitions come before uses; unreachable ones are left out.
 
+mod bulk;
 mod calls;
 mod control;
 mod memory;
@@ -15,12 +16,14 @@ use crate::plan::{Facts, Plan};
 use cranelift_codegen::ir::{
     self as clif, AbiParam, AliasRegion, AliasRegionData, InstBuilder, MemFlagsData, types,
 };
-use cranelift_entity::{EntityRef, SecondaryMap};
+use cranelift_entity::{EntityRef, PrimaryMap, SecondaryMap};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, FunctionBuilderContext, Variable};
 use cranelift_jit::JITModule;
 use cranelift_module::Module as _;
 use iecc_ir::analysis::Cfg;
-use iecc_ir::{Block, FuncId, Function, Inst, InstData, Layout, Module, RefParam, Type, Value};
+use iecc_ir::{
+    Block, FuncId, Function, Inst, InstData, Layout, Local, Module, RefParam, Type, Value,
+};
 use std::collections::BTreeMap;
 
 /// What is the same for all functions of a program.
@@ -78,6 +81,7 @@ struct AliasRegions {
     state: AliasRegion,
     input: AliasRegion,
     output: AliasRegion,
+    locals: AliasRegion,
 }
 
 impl AliasRegions {
@@ -93,6 +97,7 @@ impl AliasRegions {
             state: region(1, "state"),
             input: region(2, "input"),
             output: region(3, "output"),
+            locals: region(4, "locals"),
         }
     }
 }
@@ -112,6 +117,10 @@ struct Translator<'t, 'm> {
     context: clif::Value,
     state: clif::Value,
     refs: Vec<clif::Value>,
+    /// Where each local lies in the memory of the activation.
+    local_offsets: PrimaryMap<Local, u64>,
+    /// That memory, if it is on the stack.
+    local_slot: Option<clif::StackSlot>,
     /// What is left of the budget, in metered functions.
     budget: Variable,
     /// Returns the status it is given; made when first needed.
@@ -148,6 +157,8 @@ pub(crate) fn translate(
         context: builder.block_params(entry)[0],
         state: builder.block_params(entry)[1],
         refs: refs.to_vec(),
+        local_offsets: program.layout.locals(&program.module.types, func).0,
+        local_slot: None,
         budget: builder.declare_var(types::I64),
         fault_exit: None,
         jit,
@@ -180,6 +191,7 @@ impl Translator<'_, '_> {
             self.reload_budget();
             self.pay(self.facts.work, None);
         }
+        self.clear_locals();
         for &block in cfg.reverse_postorder() {
             if block != entry {
                 let target = self.block(block);
@@ -224,6 +236,8 @@ impl Translator<'_, '_> {
             }
             InstData::Load { place } => self.load(place),
             InstData::Store { place, value } => return self.store(place, *value),
+            InstData::Copy { to, from } => return self.copy(to, from),
+            InstData::Clear { place } => return self.clear(place),
             InstData::Now => self.now(),
             InstData::Elapsed { place, unit_ns, ty } => self.elapsed(place, *unit_ns, *ty),
             InstData::Step { unit_ns, ty } => self.step(*unit_ns, *ty),

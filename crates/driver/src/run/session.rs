@@ -41,7 +41,9 @@ impl Cell {
         let region = match place.root {
             Root::Input => Region::Input,
             Root::Output => Region::Output,
-            Root::State | Root::Ref(_) => panic!("engines show inputs and outputs only"),
+            Root::State | Root::Ref(_) | Root::Local(_) => {
+                panic!("engines show inputs and outputs only")
+            }
         };
         let start = MemType::Struct(module.region(region));
         let (offset, ty, bit) = layout.resolve(&module.types, start, &place.path);

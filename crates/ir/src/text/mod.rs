@@ -28,6 +28,14 @@
 //!   v1: i32 = call @helper[state.t](v0)
 //!   store state.a[3], v1
 //!   store state."Local:2:I".[v1], v0       ; bit by value
+//!   call @spare[state.t]()
+//!   return
+//! }
+//! fn @spare[t: TIMER]() -> () {
+//!   local old: TIMER                       ; memory of this activation, 0 at its start
+//! b0:
+//!   copy old, t                            ; whole structs and arrays
+//!   clear t
 //!   return
 //! }
 //! ```

@@ -236,6 +236,11 @@ impl<'m> Printer<'m> {
         out.push_str(") -> (");
         types(out, &self.func.results)?;
         out.push_str(") {\n");
+        for local in self.func.locals.values() {
+            write!(out, "  local {}: ", Name(&local.name))?;
+            mem_type(out, &self.module.types, local.ty)?;
+            out.push('\n');
+        }
         for &block in &self.func.layout {
             self.block(out, block)?;
         }
@@ -316,6 +321,16 @@ impl<'m> Printer<'m> {
                 self.place(out, place)?;
                 write!(out, ", {}", self.value(*value))
             }
+            InstData::Copy { to, from } => {
+                out.push_str("copy ");
+                self.place(out, to)?;
+                out.push_str(", ");
+                self.place(out, from)
+            }
+            InstData::Clear { place } => {
+                out.push_str("clear ");
+                self.place(out, place)
+            }
             InstData::Now => out.write_str("now"),
             InstData::Elapsed { place, unit_ns, .. } => {
                 out.push_str("elapsed ");
@@ -388,6 +403,10 @@ impl<'m> Printer<'m> {
             Root::Ref(param) => match self.func.refs.get(param) {
                 Some(data) => write!(out, "{}", Name(&data.name))?,
                 None => write!(out, "<{param}>")?,
+            },
+            Root::Local(local) => match self.func.locals.get(local) {
+                Some(data) => write!(out, "{}", Name(&data.name))?,
+                None => write!(out, "<{local}>")?,
             },
         }
         let Some(start) = self.module.root_type(self.func, place.root) else {

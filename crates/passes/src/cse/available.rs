@@ -2,7 +2,7 @@
 //!
 //! Places that overlap are found without comparing all with all. Static places are kept by their
 //! scalar, with the bits of it that are known; a place with index values may overlap anything, so
-//! storing to one forgets its whole root. References may alias each other and the state.
+//! storing to one forgets its whole root, as do copies and clears. References may alias each other and the state.
 
 use iecc_ir::{Index, Place, Projection, Root, Value};
 use std::collections::HashMap;
@@ -69,9 +69,19 @@ impl Available {
         }
     }
 
-    /// Anything but the inputs may hold anything now.
-    pub(super) fn called(&mut self) {
-        self.roots.retain(|root, _| *root == Root::Input);
+    /// All that lies at a place may be anything now.
+    pub(super) fn all_changed(&mut self, place: &Place) {
+        self.forget_aliases(place.root);
+        self.roots.remove(&place.root);
+    }
+
+    /// Anything but the inputs, and locals that are not passed, may hold anything now.
+    pub(super) fn called(&mut self, refs: &[Place]) {
+        self.roots.retain(|root, _| match root {
+            Root::Input => true,
+            Root::Local(_) => refs.iter().all(|place| place.root != *root),
+            Root::State | Root::Output | Root::Ref(_) => false,
+        });
     }
 
     fn forget_aliases(&mut self, root: Root) {
@@ -85,7 +95,7 @@ impl Available {
 fn may_alias(root: Root) -> bool {
     match root {
         Root::State | Root::Ref(_) => true,
-        Root::Input | Root::Output => false,
+        Root::Input | Root::Output | Root::Local(_) => false,
     }
 }
 

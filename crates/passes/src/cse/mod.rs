@@ -240,8 +240,12 @@ impl<'f> Numbering<'f> {
                 available.changed(place);
                 false
             }
-            InstData::Call { .. } => {
-                available.called();
+            InstData::Copy { to: place, .. } | InstData::Clear { place } => {
+                available.all_changed(place);
+                false
+            }
+            InstData::Call { refs, .. } => {
+                available.called(refs);
                 false
             }
             _ => false,

@@ -1,5 +1,6 @@
 //! Indices that turn out to be constants: the place becomes static, or the access vanishes if it
-//! lies outside (a load gives 0, a store does nothing; that is what places mean).
+//! lies outside (a load gives 0, a store does nothing; that is what places mean). A copy from outside
+//! becomes a clear.
 
 use super::simplify::Rewriter;
 use iecc_ir::{
@@ -30,6 +31,7 @@ impl Regions {
             Root::Input => MemType::Struct(self.input),
             Root::Output => MemType::Struct(self.output),
             Root::Ref(param) => func.refs[param].ty,
+            Root::Local(local) => func.locals[local].ty,
         }
     }
 }
@@ -48,7 +50,18 @@ pub(super) enum Access {
 pub(super) fn fix_indices(rewriter: &mut Rewriter<'_>, inst: Inst) -> Access {
     let mut data = rewriter.func.inst(inst).clone();
     let access = match &mut data {
-        InstData::Load { place } | InstData::Store { place, .. } => fix(rewriter, place),
+        InstData::Load { place } | InstData::Store { place, .. } | InstData::Clear { place } => {
+            fix(rewriter, place)
+        }
+        InstData::Copy { to, from } => match (fix(rewriter, to), fix(rewriter, from)) {
+            (Access::Outside, _) => Access::Outside,
+            (_, Access::Outside) => {
+                data = InstData::Clear { place: to.clone() };
+                Access::Fixed
+            }
+            (Access::Unchanged, Access::Unchanged) => Access::Unchanged,
+            (Access::Fixed, _) | (_, Access::Fixed) => Access::Fixed,
+        },
         InstData::Elapsed { place, .. } => inside_only(fix(rewriter, place)),
         InstData::Call { refs, .. } => {
             let fixed = refs

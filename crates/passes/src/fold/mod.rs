@@ -63,6 +63,8 @@ fn evaluate(func: &Function, data: &InstData, known: impl Fn(Value) -> Option<u6
         },
         InstData::Load { .. }
         | InstData::Store { .. }
+        | InstData::Copy { .. }
+        | InstData::Clear { .. }
         | InstData::Now
         | InstData::Elapsed { .. }
         | InstData::Step { .. }

@@ -180,6 +180,8 @@ impl<'f> Solver<'f> {
             | InstData::Convert { .. }
             | InstData::Load { .. }
             | InstData::Store { .. }
+            | InstData::Copy { .. }
+            | InstData::Clear { .. }
             | InstData::Now
             | InstData::Elapsed { .. }
             | InstData::Step { .. }

@@ -112,6 +112,8 @@ impl Rewriter<'_> {
             | InstData::Step { .. }
             | InstData::Load { .. }
             | InstData::Store { .. }
+            | InstData::Copy { .. }
+            | InstData::Clear { .. }
             | InstData::Elapsed { .. }
             | InstData::Call { .. } => Step::Keep,
         }
@@ -127,9 +129,11 @@ impl Rewriter<'_> {
             InstData::Unary { arg, .. } => self.ty(*arg),
             InstData::Binary { args, .. } | InstData::Select { args, .. } => self.ty(args[0]),
             InstData::Now => Type::I64,
-            InstData::Load { .. } | InstData::Store { .. } | InstData::Call { .. } => {
-                panic!("memory is not evaluated")
-            }
+            InstData::Load { .. }
+            | InstData::Store { .. }
+            | InstData::Copy { .. }
+            | InstData::Clear { .. }
+            | InstData::Call { .. } => panic!("memory is not evaluated"),
         }
     }
 

@@ -4,7 +4,7 @@
 //! so what an arm computes is computed always; a parameter of a join becomes a choice by the
 //! conditions of the branches between the join and its immediate dominator; a store becomes a
 //! store of the new value or the old one. A function is left as it is if it loops or faults, or
-//! if a call, an `elapsed` or a store to an output (whose old value cannot be loaded) depends on a
+//! if a call, an `elapsed`, a `copy`, a `clear` or a store to an output (whose old value cannot be loaded) depends on a
 //! branch.
 //!
 //! Size: parameters that choose between two values share one condition per partition of the ways
@@ -62,7 +62,10 @@ fn effects_allow(func: &Function, regions: &Regions) -> bool {
 fn can_be_chosen(data: &InstData) -> bool {
     match data {
         InstData::Store { place, .. } => place.root != Root::Output,
-        InstData::Elapsed { .. } | InstData::Call { .. } => false,
+        InstData::Elapsed { .. }
+        | InstData::Copy { .. }
+        | InstData::Clear { .. }
+        | InstData::Call { .. } => false,
         _ => true,
     }
 }

@@ -30,10 +30,18 @@ impl Candidates {
                 InstData::Load { place } => candidates.access(place, false),
                 InstData::Store { place, .. } => candidates.access(place, true),
                 InstData::Elapsed { place, .. } => candidates.block(place),
+                InstData::Copy { to, from } => {
+                    candidates.block(to);
+                    candidates.block(from);
+                }
+                InstData::Clear { place } => candidates.block(place),
                 InstData::Call { func, refs, .. } => {
                     refs.iter().for_each(|place| candidates.block(place));
                     let touched = summaries.call(*func);
                     candidates.outputs_blocked |= touched.outputs;
+                    if touched.whole_state {
+                        candidates.block(&Place::root(Root::State));
+                    }
                     for &field in &touched.state {
                         candidates.block(&Place::root(Root::State).field(field));
                     }
@@ -63,7 +71,7 @@ impl Candidates {
     }
 
     fn note_root(&mut self, root: Root) {
-        if matches!(root, Root::State | Root::Ref(_)) {
+        if may_alias(root) {
             self.aliases.insert(root);
         }
     }
@@ -79,8 +87,7 @@ impl Candidates {
         self.scalars
             .retain(|place, is_stored| !*is_stored || certain(place.root));
         if self.aliases.len() > 1 {
-            self.scalars
-                .retain(|place, _| matches!(place.root, Root::Input | Root::Output));
+            self.scalars.retain(|place, _| !may_alias(place.root));
         }
         self.drop_outputs(func);
         let promoted = self.scalars.into_iter().map(|(place, is_stored)| Promoted {
@@ -149,6 +156,14 @@ impl Candidates {
                 }
             }
         }
+    }
+}
+
+/// Whether places of this root may be the same memory as places of another.
+fn may_alias(root: Root) -> bool {
+    match root {
+        Root::State | Root::Ref(_) => true,
+        Root::Input | Root::Output | Root::Local(_) => false,
     }
 }
 

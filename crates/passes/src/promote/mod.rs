@@ -1,5 +1,7 @@
 //! Promotion: scalars of memory become values for the length of a function.
 //!
+//! Copies and clears of few scalars, or of locals, become loads and stores first.
+//!
 //! After it, a promoted scalar is loaded once, at the entry, and only if its old value is needed;
 //! and stored once, at the only return, and only if it was written to. Nothing is stored on the
 //! way to a fault, which leaves memory as it was before the scan. Bits of a promoted word are taken
@@ -9,9 +11,11 @@
 //! `elapsed`, reference or callee; outputs only if every way to the return stores them, since their
 //! old value cannot be loaded. References may be the same as each other and lie in the state, so
 //! a function that uses two of these roots promotes neither. Nor is a reference that may be to nothing
-//! promoted where it is stored to.
+//! promoted where it is stored to. A scalar of a local is 0 at the entry and never stored back, so
+//! there is no limit to how many are promoted.
 
 mod candidates;
+mod expand;
 mod rename;
 mod summary;
 
@@ -27,12 +31,12 @@ const FEW: usize = 48;
 
 /// Promotes what can be promoted in every function.
 pub(crate) fn promote(module: &mut Module) {
-    run(module, usize::MAX);
+    run(module, usize::MAX, expand::ALL);
 }
 
 /// Promotes in functions that touch few scalars.
 pub(crate) fn promote_few(module: &mut Module) {
-    run(module, FEW);
+    run(module, FEW, expand::FEW);
 }
 
 /// A scalar that becomes a variable.
@@ -44,7 +48,14 @@ struct Promoted {
     is_stored: bool,
 }
 
-fn run(module: &mut Module, limit: usize) {
+impl Promoted {
+    fn is_local(&self) -> bool {
+        matches!(self.place.root, Root::Local(_))
+    }
+}
+
+fn run(module: &mut Module, limit: usize, expansion: expand::Limits) {
+    expand::expand(module, expansion);
     let summaries = Summaries::of(module);
     let regions = [
         (Root::State, module.state),
@@ -59,15 +70,21 @@ fn run(module: &mut Module, limit: usize) {
             let region = regions.iter().find(|(root, _)| *root == place.root);
             let start = match (region, place.root) {
                 (_, Root::Ref(param)) => func.refs[param].ty,
+                (_, Root::Local(local)) => func.locals[local].ty,
                 (Some(&(_, id)), _) => MemType::Struct(id),
                 (None, _) => panic!("every root is a region or a reference"),
             };
             scalar_type(types, start, place)
         };
         let certain = |root| references.certain(id, root);
-        let promoted = Candidates::of(func, &summaries).promoted(func, &certain, &type_of);
-        if !promoted.is_empty() && promoted.len() <= limit {
+        let mut promoted = Candidates::of(func, &summaries).promoted(func, &certain, &type_of);
+        let others = promoted.iter().filter(|p| !p.is_local()).count();
+        if others > limit {
+            promoted.retain(Promoted::is_local);
+        } else if others > 0 {
             join_returns(func);
+        }
+        if !promoted.is_empty() {
             rename::rename(func, &promoted);
         }
     }

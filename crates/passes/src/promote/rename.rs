@@ -16,7 +16,7 @@ use iecc_ir::{
 };
 use std::collections::HashMap;
 
-/// Turns the scalars into values. The function has at most one return.
+/// Turns the scalars into values. The function has at most one return if one of them is no local.
 pub(super) fn rename(func: &mut Function, promoted: &[Promoted]) {
     let cfg = Cfg::new(func);
     let dominators = Dominators::new(&cfg);
@@ -210,14 +210,15 @@ impl Renamer<'_> {
         self.current[variable].unwrap_or_else(|| self.initial(variable))
     }
 
-    /// The old value: loaded, or for an output anything, since it is stored on every way on.
+    /// The old value: loaded; of a local 0; of an output anything, since it is stored on every way
+    /// on.
     fn initial(&mut self, variable: usize) -> Value {
         if let Some(value) = self.initial[variable] {
             return value;
         }
         let Promoted { place, ty, .. } = &self.promoted[variable];
         let data = match place.root {
-            Root::Output => InstData::Const { ty: *ty, bits: 0 },
+            Root::Output | Root::Local(_) => InstData::Const { ty: *ty, bits: 0 },
             Root::State | Root::Input | Root::Ref(_) => InstData::Load {
                 place: place.clone(),
             },
@@ -229,11 +230,12 @@ impl Renamer<'_> {
         value
     }
 
-    /// Stores what is not as it was.
+    /// Stores what is not as it was; locals are gone with the return.
     fn store_all(&mut self) {
         for (variable, promoted) in self.promoted.iter().enumerate() {
             let current = self.current[variable].map(|value| self.replacements.find(value));
-            let Some(value) = current.filter(|_| promoted.is_stored) else {
+            let kept = promoted.is_stored && !promoted.is_local();
+            let Some(value) = current.filter(|_| kept) else {
                 continue;
             };
             if promoted.place.root == Root::Output || self.initial[variable] != Some(value) {

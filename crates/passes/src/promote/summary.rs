@@ -10,6 +10,8 @@ use std::collections::BTreeSet;
 pub(super) struct Summary {
     /// Fields of the state.
     pub(super) state: BTreeSet<u32>,
+    /// Whether it passes on or moves the state as a whole.
+    pub(super) whole_state: bool,
     /// Whether it stores outputs.
     pub(super) outputs: bool,
 }
@@ -37,11 +39,11 @@ impl Summaries {
         let blocks = func.layout.iter().map(|&block| func.block(block));
         for &inst in blocks.flat_map(|block| &block.insts) {
             let data = func.inst(inst);
-            if let Some(place) = data.place() {
-                summary.touch(place);
-            }
-            if let InstData::Call { func, refs, .. } = data {
-                refs.iter().for_each(|place| summary.touch(place));
+            data.places()
+                .into_iter()
+                .for_each(|place| summary.touch(place));
+            if let InstData::Call { func, .. } = data {
+                summary.whole_state |= self.0[*func].whole_state;
                 summary.state.extend(&self.0[*func].state);
                 summary.outputs |= self.0[*func].outputs;
             }
@@ -56,8 +58,9 @@ impl Summary {
             (Root::State, Some(Projection::Field(field))) => {
                 self.state.insert(*field);
             }
+            (Root::State, _) => self.whole_state = true,
             (Root::Output, _) => self.outputs = true,
-            (Root::State | Root::Input | Root::Ref(_), _) => {}
+            (Root::Input | Root::Ref(_) | Root::Local(_), _) => {}
         }
     }
 }

@@ -301,6 +301,8 @@ impl<'m> Analysis<'m> {
                 .unwrap_or(Range::of_type(ty)),
             InstData::Load { .. }
             | InstData::Store { .. }
+            | InstData::Copy { .. }
+            | InstData::Clear { .. }
             | InstData::Elapsed { .. }
             | InstData::Call { .. } => Range::of_type(ty),
         }

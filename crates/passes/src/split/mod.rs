@@ -37,6 +37,9 @@ pub(crate) fn split(module: &mut Module) {
         for param in func.refs.values_mut() {
             param.ty = retyped.unchanged(param.ty);
         }
+        for local in func.locals.values_mut() {
+            local.ty = retyped.unchanged(local.ty);
+        }
     }
     let names = std::mem::take(&mut module.names).into_iter();
     module.names = names
@@ -50,19 +53,10 @@ pub(crate) fn split(module: &mut Module) {
 }
 
 fn rewrite_places(data: &mut InstData, retyped: &Retyped) {
-    let rewrite = |place: &mut Place| {
+    for place in data.places_mut() {
         *place = retyped
             .place(place)
             .expect("split words are accessed by bits");
-    };
-    match data {
-        InstData::Load { place }
-        | InstData::Store { place, .. }
-        | InstData::Elapsed { place, .. } => {
-            rewrite(place);
-        }
-        InstData::Call { refs, .. } => refs.iter_mut().for_each(rewrite),
-        _ => {}
     }
 }
 
@@ -74,10 +68,13 @@ fn words_to_split(module: &Module) -> BTreeMap<Key, u64> {
         let blocks = func.layout.iter().map(|&block| func.block(block));
         for &inst in blocks.flat_map(|block| &block.insts) {
             let data = func.inst(inst);
-            if let InstData::Call { refs, .. } = data {
-                whole.extend(refs.iter().filter_map(state_key).map(|(key, _)| key));
-            }
-            let Some((key, bit)) = data.place().and_then(state_key) else {
+            let Some(place) = data.place() else {
+                // Calls, copies and clears reach all that lies there.
+                let places = data.places().into_iter();
+                whole.extend(places.filter_map(state_key).map(|(key, _)| key));
+                continue;
+            };
+            let Some((key, bit)) = state_key(place) else {
                 continue;
             };
             match bit {

@@ -1,6 +1,7 @@
 //! The new types of a module whose words are split, and where old places lie in them.
 
 use super::{ELEMENT, Key};
+use crate::functions::unique;
 use iecc_ir::{
     FieldDef, Index, MemType, Module, Place, Projection, Root, StructId, Type, TypeTable,
 };
@@ -41,8 +42,9 @@ impl Retyped {
             unchanged: BTreeMap::new(),
         };
         for func in module.funcs.values() {
-            for param in func.refs.values() {
-                builder.keep(param.ty);
+            let refs = func.refs.values().map(|data| data.ty);
+            for ty in refs.chain(func.locals.values().map(|data| data.ty)) {
+                builder.keep(ty);
             }
         }
         let state = builder.split_struct(module.state, &mut Key::new());
@@ -205,13 +207,4 @@ impl Builder<'_> {
         self.changed.insert(key.clone(), map);
         self.add(&old.name, fields)
     }
-}
-
-/// The name, with as many primes as make it new.
-fn unique(name: &str, taken: &BTreeSet<String>) -> String {
-    let mut name = name.to_owned();
-    while taken.contains(&name) {
-        name.push('\'');
-    }
-    name
 }

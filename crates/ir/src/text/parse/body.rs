@@ -3,8 +3,8 @@
 use super::{Parser, Result, duration};
 use crate::text::lex::Token;
 use crate::{
-    BinaryOp, Block, CompareOp, ConvertOp, FaultCode, Function, Index, InstData, MemType, Module,
-    Origin, Place, RefParamData, Root, Target, Terminator, Type, UnaryOp, Value,
+    BinaryOp, Block, CompareOp, ConvertOp, FaultCode, Function, Index, InstData, LocalData,
+    MemType, Module, Origin, Place, RefParamData, Root, Target, Terminator, Type, UnaryOp, Value,
 };
 use std::collections::HashMap;
 
@@ -30,8 +30,15 @@ impl Parser {
         self.expect("(")?;
         func.results = self.list(")", Self::value_type)?;
         self.expect("{")?;
+        while self.accept_word("local") {
+            let name = self.name()?;
+            self.expect(":")?;
+            let ty = self.mem_type(0)?;
+            func.locals.push(LocalData { name, ty });
+        }
         let at = self.offset();
         let mut body = Body {
+            roots: roots(module, &func),
             module,
             func,
             values: HashMap::new(),
@@ -87,7 +94,7 @@ impl Parser {
             return Ok(());
         }
         let results = match word.as_str() {
-            "store" | "call" => Vec::new(),
+            "store" | "copy" | "clear" | "call" => Vec::new(),
             _ => self.results()?,
         };
         let types: Vec<Type> = results.iter().map(|(_, ty)| *ty).collect();
@@ -164,6 +171,15 @@ impl Parser {
                     value: self.value()?,
                 })
             }
+            ("copy", _) => {
+                let to = self.place(body)?;
+                self.expect(",")?;
+                let from = self.place(body)?;
+                Ok(InstData::Copy { to, from })
+            }
+            ("clear", _) => Ok(InstData::Clear {
+                place: self.place(body)?,
+            }),
             ("now", _) => Ok(InstData::Now),
             ("elapsed", Some(ty)) => {
                 let place = self.place(body)?;
@@ -243,16 +259,9 @@ impl Parser {
     fn place(&mut self, body: &Body<'_>) -> Result<Place> {
         let at = self.next;
         let name = self.name()?;
-        let named = body.func.refs.iter().find(|(_, data)| data.name == name);
-        let (root, start) = match (name.as_str(), named) {
-            ("state", _) => (Root::State, MemType::Struct(body.module.state)),
-            ("input", _) => (Root::Input, MemType::Struct(body.module.input)),
-            ("output", _) => (Root::Output, MemType::Struct(body.module.output)),
-            (_, Some((param, data))) => (Root::Ref(param), data.ty),
-            (_, None) => {
-                self.next = at;
-                return self.fail("state, input, output or a reference parameter");
-            }
+        let Some(&(root, start)) = body.roots.get(&name) else {
+            self.next = at;
+            return self.fail("state, input, output, a reference parameter or a local");
         };
         let (path, _) = self.path(start, false, &mut |p| p.value().map(Index::Value))?;
         Ok(Place { root, path })
@@ -330,10 +339,36 @@ impl Parser {
     }
 }
 
+/// What places may begin with. Of two things with one name, which the verifier refuses, the first.
+fn roots(module: &Module, func: &Function) -> HashMap<String, (Root, MemType)> {
+    let regions = [
+        ("state", Root::State, module.state),
+        ("input", Root::Input, module.input),
+        ("output", Root::Output, module.output),
+    ];
+    let mut roots = HashMap::new();
+    for (name, root, id) in regions {
+        roots.insert(name.to_owned(), (root, MemType::Struct(id)));
+    }
+    let refs = func
+        .refs
+        .iter()
+        .map(|(id, data)| (&data.name, Root::Ref(id), data.ty));
+    let locals = func
+        .locals
+        .iter()
+        .map(|(id, data)| (&data.name, Root::Local(id), data.ty));
+    for (name, root, ty) in refs.chain(locals) {
+        roots.entry(name.clone()).or_insert((root, ty));
+    }
+    roots
+}
+
 /// A function whose uses still hold the numbers of the text.
 struct Body<'m> {
     module: &'m Module,
     func: Function,
+    roots: HashMap<String, (Root, MemType)>,
     values: HashMap<u32, Value>,
     blocks: HashMap<u32, Block>,
 }
