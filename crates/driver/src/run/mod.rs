@@ -12,6 +12,7 @@
 mod csv_text;
 mod instrument;
 mod names;
+mod probe;
 mod session;
 mod stimulus;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod trace;
 mod value;
 
 pub use instrument::{Instruments, Poke, Watch, instrument};
+pub use probe::{Probe, Probes, Shape};
 pub use session::{Column, Request, RunError, Session};
 pub use stimulus::Stimulus;
 pub use time::{Schedule, TimeUnit, parse_duration};

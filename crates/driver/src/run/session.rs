@@ -28,7 +28,7 @@ pub struct Column {
 
 /// A value in the input or output region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Cell {
+pub(super) struct Cell {
     region: Region,
     offset: usize,
     /// The type in memory, and the bit of it that is meant.
@@ -37,7 +37,7 @@ struct Cell {
 }
 
 impl Cell {
-    fn new(module: &Module, layout: &Layout, place: &Place) -> Self {
+    pub(super) fn new(module: &Module, layout: &Layout, place: &Place) -> Self {
         let region = match place.root {
             Root::Input => Region::Input,
             Root::Output => Region::Output,
@@ -56,12 +56,17 @@ impl Cell {
         }
     }
 
-    fn get(self, bytes: &[u8]) -> u64 {
+    /// The region it lies in.
+    pub(super) fn region(self) -> Region {
+        self.region
+    }
+
+    pub(super) fn get(self, bytes: &[u8]) -> u64 {
         let bits = Scalar::read(bytes, self.offset, self.ty).bits;
         self.bit.map_or(bits, |bit| (bits >> bit) & 1)
     }
 
-    fn set(self, bytes: &mut [u8], bits: u64) {
+    pub(super) fn set(self, bytes: &mut [u8], bits: u64) {
         let bits = match self.bit {
             None => bits,
             Some(bit) => {

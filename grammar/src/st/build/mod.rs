@@ -7,7 +7,7 @@ mod expr;
 mod literal;
 mod number;
 mod stmt;
-mod time;
+pub(super) mod time;
 mod types;
 mod unit;
 
