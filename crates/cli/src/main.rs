@@ -6,6 +6,7 @@
 
 mod build;
 mod check;
+mod conformance;
 mod explain;
 mod ir;
 mod messages;
@@ -45,6 +46,7 @@ enum Command {
     Run(run::Arguments),
     Ir(ir::Arguments),
     Explain(explain::Arguments),
+    Conformance(conformance::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -63,6 +65,7 @@ fn main() -> ExitCode {
                 return terminal::wrong_usage(&error.to_string());
             }
         }
+        Command::Conformance(arguments) => conformance::run(&arguments, &mut messages),
         Command::Explain(arguments) => {
             if let Err(error) = explain::run(&arguments) {
                 return terminal::wrong_usage(&error);

@@ -6,7 +6,7 @@ use crate::header::{Header, Key, header};
 use crate::messages::{Expected, expected};
 use crate::trace::Trace;
 use iecc_diag::Severity;
-use iecc_grammar::st::Dialect;
+use iecc_driver::Dialect;
 use iecc_ir::FaultCode;
 use std::fmt;
 
@@ -298,14 +298,23 @@ mod tests {
             (format!("covers: ed3:71:8\n{TABLE}"), "`about` is missing"),
             (HEAD.to_owned(), "neither a trace nor an error"),
             (format!("covers: ed3:71:99\nabout: x\n{TABLE}"), "no row"),
-            (format!("covers: ed3:72:4\nabout: x\n{TABLE}"), "of table 71"),
+            (
+                format!("covers: ed3:72:4\nabout: x\n{TABLE}"),
+                "of table 71",
+            ),
             (format!("{HEAD}colour: red\n{TABLE}"), "no key `colour`"),
             (format!("{HEAD}edition: 4\n{TABLE}"), "no edition"),
             (format!("{HEAD}fault: none\n{TABLE}"), "no fault"),
             (format!("{HEAD}fault: divide\n{TABLE}"), "gives no values"),
             (format!("{HEAD}only: jit\n{TABLE}"), "needs `because`"),
-            (format!("{HEAD}only: gpu\nbecause: x\n{TABLE}"), "no engine `gpu`"),
-            (format!("{HEAD}trace:\nt | a |\n0ms | 1 |\n"), "checks no value"),
+            (
+                format!("{HEAD}only: gpu\nbecause: x\n{TABLE}"),
+                "no engine `gpu`",
+            ),
+            (
+                format!("{HEAD}trace:\nt | a |\n0ms | 1 |\n"),
+                "checks no value",
+            ),
         ] {
             let error = parse(&keys).unwrap_err();
             assert!(error.message.contains(words), "{keys}: {error}");

@@ -195,7 +195,11 @@ fn string(text: &str, character: Type) -> Result<Vec<u64>, String> {
             rest = behind;
         } else {
             let mut pair = [0; 2];
-            units.extend(c.encode_utf16(&mut pair).iter().map(|unit| u64::from(*unit)));
+            units.extend(
+                c.encode_utf16(&mut pair)
+                    .iter()
+                    .map(|unit| u64::from(*unit)),
+            );
         }
     }
     if units.iter().any(|unit| *unit > character.mask()) {

@@ -111,7 +111,10 @@ mod tests {
     fn older_rows_name_newer_ones_that_exist() {
         for row in features() {
             if let Some(newer) = &row.newer {
-                assert_eq!((row.id.edition, newer.edition), (Edition::Two, Edition::Three));
+                assert_eq!(
+                    (row.id.edition, newer.edition),
+                    (Edition::Two, Edition::Three)
+                );
                 assert!(feature(newer).is_some(), "{} names {newer}", row.id);
             }
         }

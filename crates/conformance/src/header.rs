@@ -56,7 +56,10 @@ pub(crate) fn header(text: &str) -> Result<Header, CaseError> {
 impl Header {
     fn take(&mut self, line: usize, text: &str) -> Result<(), CaseError> {
         if text.contains("(*") {
-            return Err(CaseError::at(line, "the comment of a case holds no other comment"));
+            return Err(CaseError::at(
+                line,
+                "the comment of a case holds no other comment",
+            ));
         }
         if text.is_empty() {
             return Ok(());
@@ -69,7 +72,10 @@ impl Header {
         match split_key(text) {
             Some((TABLE, "")) => self.table = Some(Vec::new()),
             Some((TABLE, _)) => {
-                return Err(CaseError::at(line, "the table of a trace begins on the next line"));
+                return Err(CaseError::at(
+                    line,
+                    "the table of a trace begins on the next line",
+                ));
             }
             Some((name, value)) => self.add(line, name, value)?,
             None => self.go_on(line, text)?,
@@ -79,7 +85,10 @@ impl Header {
 
     fn add(&mut self, line: usize, name: &str, value: &str) -> Result<(), CaseError> {
         if self.keys.iter().any(|key| key.name == name) {
-            return Err(CaseError::at(line, format!("the key `{name}` is there twice")));
+            return Err(CaseError::at(
+                line,
+                format!("the key `{name}` is there twice"),
+            ));
         }
         self.keys.push(Key {
             name: name.to_owned(),
@@ -133,7 +142,10 @@ mod tests {
             ]
         );
         let rows = header.table.unwrap();
-        let rows: Vec<_> = rows.iter().map(|row| (row.line, row.text.as_str())).collect();
+        let rows: Vec<_> = rows
+            .iter()
+            .map(|row| (row.line, row.text.as_str()))
+            .collect();
         assert_eq!(rows, [(5, "t | | x"), (7, "0ms | | 1")]);
         assert_eq!(header.lines, 7);
     }

@@ -16,6 +16,7 @@ mod header;
 mod messages;
 mod run;
 mod statement;
+mod suite;
 mod tables;
 mod trace;
 
@@ -25,5 +26,6 @@ pub use features::{Edition, Feature, FeatureId, features};
 pub use messages::Expected;
 pub use run::{CaseResult, EngineResult, Outcome, run_case, run_module};
 pub use statement::statement;
+pub use suite::{Misread, failures, read_suite, summary};
 pub use tables::{ErrorCondition, Extension, Parameter, errors, extensions, parameters};
 pub use trace::{Row, Trace};

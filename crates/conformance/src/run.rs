@@ -7,7 +7,7 @@ use crate::messages::compare;
 use crate::trace::{Row, Trace};
 use iecc_diag::{Diagnostic, Diagnostics};
 use iecc_driver::run::{Probe, Probes};
-use iecc_driver::{EngineKind, FrontOptions, compile};
+use iecc_driver::{EngineKind, FrontOptions, Sources, compile};
 use iecc_ir::{FaultCode, Module, Region};
 use iecc_source::SourceMap;
 use iecc_target::{Fault, region_bytes};
@@ -49,10 +49,13 @@ impl CaseResult {
     /// Everything that is wrong.
     pub fn failures(&self) -> Vec<String> {
         let front = self.front.as_ref().err().cloned();
-        let engines = self.engines.iter().filter_map(|result| match &result.outcome {
-            Outcome::Failed(what) => Some(format!("{}: {what}", result.engine.name())),
-            Outcome::Passed | Outcome::Refused(_) | Outcome::NotApplicable => None,
-        });
+        let engines = self
+            .engines
+            .iter()
+            .filter_map(|result| match &result.outcome {
+                Outcome::Failed(what) => Some(format!("{}: {what}", result.engine.name())),
+                Outcome::Passed | Outcome::Refused(_) | Outcome::NotApplicable => None,
+            });
         front.into_iter().chain(engines).collect()
     }
 }
@@ -76,7 +79,12 @@ fn words(panic: &(dyn Any + Send)) -> &str {
 fn compile_and_run(case: &Case) -> CaseResult {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let file = map.add(format!("{}.st", case.name), case.text.as_str());
-    let module = compile(&map, file, &FrontOptions::default(), &mut diagnostics);
+    let module = compile(
+        &map,
+        &Sources::text(vec![file]),
+        &options(case),
+        &mut diagnostics,
+    );
     let front = compare(&case.messages, &diagnostics, &map);
     match (front, module, &case.trace) {
         (Err(what), _, _) => CaseResult {
@@ -92,6 +100,13 @@ fn compile_and_run(case: &Case) -> CaseResult {
             front: Ok(()),
             engines: Vec::new(),
         },
+    }
+}
+
+fn options(case: &Case) -> FrontOptions {
+    FrontOptions {
+        dialect: case.dialect,
+        ..FrontOptions::default()
     }
 }
 
@@ -129,7 +144,9 @@ pub fn run_module(case: &Case, mut module: Module, trace: &Trace) -> CaseResult 
 }
 
 fn all(errors: &[Diagnostic]) -> String {
-    let texts = errors.iter().map(|error| format!("{}: {}", error.code, error.message));
+    let texts = errors
+        .iter()
+        .map(|error| format!("{}: {}", error.code, error.message));
     texts.collect::<Vec<_>>().join("; ")
 }
 
@@ -247,7 +264,12 @@ impl<'c> Plan<'c> {
                 format!("`{}` is {found}, not {expected}", probe.path)
             })
         };
-        let wrong = self.probes.seen.iter().zip(&self.scans[scan].seen).filter_map(wrong);
+        let wrong = self
+            .probes
+            .seen
+            .iter()
+            .zip(&self.scans[scan].seen)
+            .filter_map(wrong);
         let wrong: Vec<String> = wrong.collect();
         (!wrong.is_empty()).then(|| wrong.join("; "))
     }
@@ -266,4 +288,3 @@ fn cells(
     };
     cells.iter().zip(probes).map(cell).collect()
 }
-

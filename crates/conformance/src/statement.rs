@@ -7,6 +7,7 @@ use crate::case::Case;
 use crate::engines::Family;
 use crate::features::{Edition, Feature, FeatureId, features};
 use crate::run::{CaseResult, Outcome};
+use crate::suite::counts;
 use crate::tables::{errors, extensions, parameters};
 use iecc_driver::EngineKind;
 use std::collections::BTreeMap;
@@ -54,7 +55,9 @@ fn write_all(out: &mut String, cases: &[Case], results: &[CaseResult]) -> std::f
 
 fn introduction(out: &mut String, cases: &[Case], results: &[CaseResult]) -> std::fmt::Result {
     let refused = cases.iter().filter(|case| case.has_errors()).count();
-    let failed = results.iter().filter(|result| !result.failures().is_empty());
+    let failed = results
+        .iter()
+        .filter(|result| !result.failures().is_empty());
     writeln!(
         out,
         "# Compliance statement
@@ -86,20 +89,12 @@ fn write_engines(out: &mut String, results: &[CaseResult]) -> std::fmt::Result {
         "| Engine | Passed | Refused | Not applicable | Failed |\n|---|--:|--:|--:|--:|"
     )?;
     for engine in EngineKind::ALL {
-        let outcomes = results.iter().flat_map(|result| &result.engines);
-        let outcomes = outcomes.filter(|result| result.engine == engine);
-        let mut counts = [0usize; 4];
-        for result in outcomes {
-            counts[match result.outcome {
-                Outcome::Passed => 0,
-                Outcome::Refused(_) => 1,
-                Outcome::NotApplicable => 2,
-                Outcome::Failed(_) => 3,
-            }] += 1;
-        }
-        let [passed, refused, other, failed] = counts;
+        let [passed, refused, other, failed] = counts(engine, results);
         let name = engine.name();
-        writeln!(out, "| {name} | {passed} | {refused} | {other} | {failed} |")?;
+        writeln!(
+            out,
+            "| {name} | {passed} | {refused} | {other} | {failed} |"
+        )?;
     }
     writeln!(
         out,
@@ -116,7 +111,9 @@ fn proofs(
     cases: &[Case],
     results: &[CaseResult],
 ) -> BTreeMap<&'static FeatureId, Proof> {
-    let own = features().iter().filter(|feature| feature.id.edition == edition);
+    let own = features()
+        .iter()
+        .filter(|feature| feature.id.edition == edition);
     let own: Vec<&Feature> = own.collect();
     let mut proofs: BTreeMap<&FeatureId, Proof> = BTreeMap::new();
     for (case, result) in cases.iter().zip(results) {
@@ -224,7 +221,10 @@ fn write_table(
         let Proof {
             cases, messages, ..
         } = proof;
-        writeln!(out, "| {number} | {text} | {marks} | {cases} | {messages} |")?;
+        writeln!(
+            out,
+            "| {number} | {text} | {marks} | {cases} | {messages} |"
+        )?;
     }
     Ok(())
 }
@@ -269,7 +269,11 @@ put together; (4) reported at run time.
 |---|---|---|"
     )?;
     for row in errors() {
-        let classes: Vec<String> = row.classes.iter().map(|class| format!("({class})")).collect();
+        let classes: Vec<String> = row
+            .classes
+            .iter()
+            .map(|class| format!("({class})"))
+            .collect();
         let (condition, treatment) = (escape(&row.condition), escape(&row.treatment));
         writeln!(out, "| {condition} | {} | {treatment} |", classes.join(" "))?;
     }

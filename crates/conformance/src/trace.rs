@@ -72,10 +72,16 @@ impl Trace {
             ("values", outputs.len(), self.outputs.len()),
         ] {
             if found != expected {
-                return Err(error(format!("{found} {what}, but the table has {expected}")));
+                return Err(error(format!(
+                    "{found} {what}, but the table has {expected}"
+                )));
             }
         }
-        if self.rows.last().is_some_and(|before| now_ns < before.now_ns) {
+        if self
+            .rows
+            .last()
+            .is_some_and(|before| now_ns < before.now_ns)
+        {
             return Err(error("the scan is before the one above".to_owned()));
         }
         let cell = |text: String| (text != NOTHING).then_some(text);
@@ -134,7 +140,10 @@ fn split(line: &TableLine) -> Result<[Vec<String>; 3], CaseError> {
         }
     }
     parts.try_into().map_err(|_| {
-        CaseError::at(line.line, "a line of the table has three parts: `t | inputs | values`")
+        CaseError::at(
+            line.line,
+            "a line of the table has three parts: `t | inputs | values`",
+        )
     })
 }
 
@@ -161,7 +170,10 @@ fn tokens(line: &TableLine) -> Result<Vec<String>, CaseError> {
         }
     }
     if quote.is_some() {
-        return Err(CaseError::at(line.line, "a string of the table is not closed"));
+        return Err(CaseError::at(
+            line.line,
+            "a string of the table is not closed",
+        ));
     }
     tokens.extend((!word.is_empty()).then_some(word));
     Ok(tokens)

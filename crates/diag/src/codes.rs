@@ -167,6 +167,8 @@ codes! {
     E6052 Error "no source file is there";
     E6053 Warning "file in a folder is left out";
     E6054 Error "folder is too deep or too large";
+    E6080 Error "file is no case of the conformance suite";
+    E6081 Error "case of the conformance suite failed";
     // 7 target cannot express this
     E7001 Error "target cannot express a loop";
     E7002 Error "target cannot express a division";

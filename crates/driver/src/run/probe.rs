@@ -130,11 +130,17 @@ fn find_all(
             Err(error) => errors.push(error),
         }
     }
-    if errors.is_empty() { Ok(found) } else { Err(errors) }
+    if errors.is_empty() {
+        Ok(found)
+    } else {
+        Err(errors)
+    }
 }
 
 fn find(module: &Module, names: &Names<'_>, path: &str) -> Result<Found, Diagnostic> {
-    let place = names.find(path).map_err(|error| error.into_diagnostic(None))?;
+    let place = names
+        .find(path)
+        .map_err(|error| error.into_diagnostic(None))?;
     let Some(shape) = shape(module, &place) else {
         let message = format!("`{path}` is not one value");
         return Err(Diagnostic::without_place(iecc_diag::Code::E6010, message));
@@ -157,7 +163,10 @@ fn shape(module: &Module, place: &Place) -> Option<Shape> {
         return None;
     };
     let fields = &module.types.structs[id].fields;
-    let named = fields.iter().map(|field| field.name.as_str()).eq(STRING_MEMBERS);
+    let named = fields
+        .iter()
+        .map(|field| field.name.as_str())
+        .eq(STRING_MEMBERS);
     let MemType::Array(data) = fields.get(1)?.ty else {
         return None;
     };
@@ -166,7 +175,10 @@ fn shape(module: &Module, place: &Place) -> Option<Shape> {
         return None;
     };
     let capacity = data.len as usize;
-    named.then_some(Shape::Text { character, capacity })
+    named.then_some(Shape::Text {
+        character,
+        capacity,
+    })
 }
 
 fn pokes(found: &Found) -> impl Iterator<Item = Poke> + '_ {
@@ -184,12 +196,7 @@ fn watches(found: &Found) -> impl Iterator<Item = Watch> + '_ {
 }
 
 /// Gives each place its cells: its own in the regions, or the fields that were added for it.
-fn place(
-    module: &Module,
-    found: Vec<Found>,
-    added: Vec<Place>,
-    counts: Vec<Place>,
-) -> Vec<Probe> {
+fn place(module: &Module, found: Vec<Found>, added: Vec<Place>, counts: Vec<Place>) -> Vec<Probe> {
     let layout = Layout::new(&module.types);
     let cell = |place: &Place| Cell::new(module, &layout, place);
     let (mut added, mut counts) = (added.iter(), counts.iter());
