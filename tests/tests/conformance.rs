@@ -5,7 +5,7 @@
 )]
 
 use iecc_ast::Names;
-use iecc_conformance::{Case, CaseResult, Edition, Outcome, features, read_suite, run_module};
+use iecc_conformance::{Case, CaseResult, Outcome, features, read_suite, run_module};
 use iecc_diag::{Diagnostics, render_text};
 use iecc_driver::{EngineKind, Levels, Sources};
 use iecc_grammar::st::parse_file;
@@ -162,10 +162,10 @@ fn a_wrong_value_is_found_on_every_engine() {
     ] {
         let result = run(table);
         for engine in EngineKind::ALL {
-            match outcome(&result, engine) {
-                Outcome::Failed(found) => assert!(found.contains(what), "{found}"),
-                other => panic!("{engine:?}: {other:?}"),
-            }
+            let Outcome::Failed(found) = outcome(&result, engine) else {
+                panic!("{engine:?}: {result:?}")
+            };
+            assert!(found.contains(what), "{found}");
         }
     }
 }

@@ -311,7 +311,7 @@ mod tests {
         Case::parse(name, &text).unwrap()
     }
 
-    fn result(verilog: Outcome) -> CaseResult {
+    fn result(verilog: &Outcome) -> CaseResult {
         let outcome = |engine| match engine {
             EngineKind::Verilog => verilog.clone(),
             EngineKind::Interp
@@ -349,9 +349,9 @@ mod tests {
             engines: Vec::new(),
         };
         let results = [
-            result(Outcome::Passed),
-            result(Outcome::Refused("no".to_owned())),
-            result(Outcome::NotApplicable),
+            result(&Outcome::Passed),
+            result(&Outcome::Refused("no".to_owned())),
+            result(&Outcome::NotApplicable),
             checked.clone(),
             checked,
             wrong,

@@ -109,6 +109,21 @@ fn direct_addresses_have_an_area_a_size_and_fields() {
 }
 
 #[test]
+fn operators_that_are_words_can_be_called() {
+    for (text, tree) in [
+        ("AND(a, b, c)", "(call AND a b c)"),
+        ("x AND AND(a, b)", "(AND x (call AND a b))"),
+        (
+            "OR(a, XOR(IN1 := b, IN2 := c))",
+            "(call OR a (call XOR IN1:=b IN2:=c))",
+        ),
+        ("MOD(a, b) MOD (c)", "(MOD (call MOD a b) c)"),
+    ] {
+        assert_eq!(expression(text), tree);
+    }
+}
+
+#[test]
 fn calls_take_arguments_by_position_or_by_name() {
     assert_eq!(expression("f()"), "(call f)");
     assert_eq!(expression("f(1, b)"), "(call f 1:Decimal b)");

@@ -83,8 +83,8 @@ impl Probes {
             counts.push(count);
         }
         Ok(Self {
-            set: place(module, set, values, counts),
-            seen: place(module, seen, opened.watches, Vec::new()),
+            set: place(module, set, &values, &counts),
+            seen: place(module, seen, &opened.watches, &[]),
         })
     }
 
@@ -196,7 +196,7 @@ fn watches(found: &Found) -> impl Iterator<Item = Watch> + '_ {
 }
 
 /// Gives each place its cells: its own in the regions, or the fields that were added for it.
-fn place(module: &Module, found: Vec<Found>, added: Vec<Place>, counts: Vec<Place>) -> Vec<Probe> {
+fn place(module: &Module, found: Vec<Found>, added: &[Place], counts: &[Place]) -> Vec<Probe> {
     let layout = Layout::new(&module.types);
     let cell = |place: &Place| Cell::new(module, &layout, place);
     let (mut added, mut counts) = (added.iter(), counts.iter());
