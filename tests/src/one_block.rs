@@ -66,9 +66,9 @@ fn by_steps(mut func: Function) -> Function {
 
 fn region(types: &mut TypeTable, name: &str, rng: &mut Rng) -> (StructId, Vec<Type>) {
     let fields: Vec<Type> = (0..6 + rng.below(6)).map(|_| rng.pick(&INTEGERS)).collect();
-    let def = fields.iter().enumerate().map(|(index, &ty)| FieldDef {
-        name: format!("{}{index}", &name[..1]),
-        ty: MemType::Scalar(ty),
+    let def = fields.iter().enumerate().map(|(index, &ty)| {
+        let name = format!("{}{index}", &name[..1]);
+        FieldDef::new(name, MemType::Scalar(ty))
     });
     (types.add_struct(name, def.collect()), fields)
 }

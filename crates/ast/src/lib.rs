@@ -18,7 +18,7 @@ pub mod st;
 
 pub use data::{Initial, L5kValue, Parameters, StringData, Value, ValueKind};
 pub use names::{Names, Symbol};
-pub use numbers::{Number, RealText, StringLiteral, parse_number};
+pub use numbers::{Number, RealText, StringLiteral, parse_number, underlines_are_between_digits};
 
 /// How deep any tree in this crate can nest: expressions count at most 64 brackets and 256
 /// operators, rungs 64 branches, tag data 128 levels, Structured Text what [`st`] says.

@@ -174,6 +174,13 @@ fn parse_digits(digits: &str, radix: u32) -> Option<u64> {
     u64::from_str_radix(&digits.replace('_', ""), radix).ok()
 }
 
+/// Whether underlines stand alone and between letters or digits. Digits must not be missing.
+pub fn underlines_are_between_digits(text: &str) -> bool {
+    let alphanumeric = |c: char| c.is_ascii_alphanumeric();
+    text.split('_')
+        .all(|piece| piece.starts_with(alphanumeric) && piece.ends_with(alphanumeric))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -50,5 +50,7 @@ pub use ops::{BinaryOp, CompareOp, ConvertOp, OperandClass, UnaryOp};
 pub use place::{Index, Place, PlaceType, Projection, Root};
 pub use ssa::{SsaConstruction, Variable};
 pub use text::{ParseError, parse_module, print_function, print_module, print_place};
-pub use types::{ArrayId, ArrayType, FieldDef, MemType, StructDef, StructId, Type, TypeTable};
+pub use types::{
+    ArrayId, ArrayType, FieldDef, MemType, StructDef, StructId, Type, TypeTable, View,
+};
 pub use verify::{Verified, VerifyError, verify};

@@ -127,6 +127,87 @@ pub struct FieldDef {
     pub name: String,
     /// Type.
     pub ty: MemType,
+    /// How people see and write it.
+    pub view: View,
+}
+
+impl FieldDef {
+    /// A field whose numbers are seen as signed decimals.
+    pub fn new(name: impl Into<String>, ty: MemType) -> Self {
+        Self {
+            name: name.into(),
+            ty,
+            view: View::default(),
+        }
+    }
+
+    /// The same field, seen otherwise.
+    #[must_use]
+    pub fn with_view(mut self, view: View) -> Self {
+        self.view = view;
+        self
+    }
+}
+
+/// How people see and write the scalars of a field, those beneath its arrays included. It changes
+/// nothing in what is computed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum View {
+    /// What the type suggests: a bit, a signed number, a real number.
+    #[default]
+    Plain,
+    /// A number without sign.
+    Unsigned,
+    /// A string of bits: `16#FF`.
+    Bits,
+    /// Nanoseconds, as a duration: `T#1s500ms`.
+    Time,
+    /// Nanoseconds since 1970-01-01, as a day: `D#2024-02-29`.
+    Date,
+    /// Nanoseconds since midnight: `TOD#12:30:00`.
+    TimeOfDay,
+    /// Nanoseconds since 1970-01-01: `DT#2024-02-29-12:30:00`.
+    DateTime,
+}
+
+impl View {
+    /// All views.
+    pub const ALL: [Self; 7] = [
+        Self::Plain,
+        Self::Unsigned,
+        Self::Bits,
+        Self::Time,
+        Self::Date,
+        Self::TimeOfDay,
+        Self::DateTime,
+    ];
+
+    /// The name in the text form.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::Unsigned => "unsigned",
+            Self::Bits => "bits",
+            Self::Time => "time",
+            Self::Date => "date",
+            Self::TimeOfDay => "time_of_day",
+            Self::DateTime => "date_time",
+        }
+    }
+
+    /// The view with this name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|view| view.name() == name)
+    }
+
+    /// Whether scalars of the type can be seen so.
+    pub fn fits(self, ty: Type) -> bool {
+        match self {
+            Self::Plain => true,
+            Self::Unsigned | Self::Bits => ty.is_int() && ty != Type::I1,
+            Self::Time | Self::Date | Self::TimeOfDay | Self::DateTime => ty == Type::I64,
+        }
+    }
 }
 
 /// A struct type.

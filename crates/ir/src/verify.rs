@@ -6,6 +6,7 @@
 //!     `state`, `input` or `output`.
 //!  2. Arrays have at least one element; each region has at most `MAX_REGION_BYTES`, the locals of all
 //!     functions together have at most `MAX_LOCAL_BYTES`; the image has the size of the state region and `i1` bytes in it are 0 or 1.
+//!     A view fits the scalars of its field; a field of structs has the plain one.
 //!  3. `scan` and `prescan` have no parameters and no results.
 //!  4. Aliases are static places of the state.
 //!  5. No function calls itself, directly or through others.
@@ -33,8 +34,9 @@
 
 use crate::analysis::{Cfg, Dominators};
 use crate::{
-    Block, FuncId, Function, Inst, InstData, Layout, MAX_LOCAL_BYTES, MAX_REGION_BYTES, MemType,
-    Module, Origin, Place, PlaceType, Projection, Root, Target, Terminator, Type, Value, ValueDef,
+    Block, FieldDef, FuncId, Function, Inst, InstData, Layout, MAX_LOCAL_BYTES, MAX_REGION_BYTES,
+    MemType, Module, Origin, Place, PlaceType, Projection, Root, Target, Terminator, Type, Value,
+    ValueDef, View,
 };
 use cranelift_entity::{EntityRef, EntitySet, SecondaryMap};
 use std::collections::BTreeSet;
@@ -128,6 +130,7 @@ impl ModuleCheck<'_, '_> {
         );
         for def in module.types.structs.values() {
             self.unique("field", def.fields.iter().map(|field| field.name.as_str()));
+            def.fields.iter().for_each(|field| self.view(field));
         }
         self.unique(
             "function",
@@ -143,6 +146,21 @@ impl ModuleCheck<'_, '_> {
         self.aliases();
         self.entry_points();
         self.recursion();
+    }
+
+    fn view(&mut self, field: &FieldDef) {
+        let mut ty = field.ty;
+        while let MemType::Array(id) = ty {
+            ty = self.module.types.array_type(id).element;
+        }
+        let fits = match ty {
+            MemType::Scalar(scalar) => field.view.fits(scalar),
+            MemType::Struct(_) | MemType::Array(_) => field.view == View::Plain,
+        };
+        if !fits {
+            let (name, view) = (&field.name, field.view.name());
+            self.error(2, format!("field {name:?} cannot be seen as {view}"));
+        }
     }
 
     fn regions(&mut self) {

@@ -34,10 +34,7 @@ impl<'p> TypeMap<'p> {
         let fields = program
             .tags
             .iter()
-            .map(|tag| FieldDef {
-                name: tag.name.clone(),
-                ty: self.mem_type(tag.ty),
-            })
+            .map(|tag| FieldDef::new(tag.name.clone(), self.mem_type(tag.ty)))
             .collect();
         self.table.add_struct("state", fields)
     }
@@ -46,9 +43,9 @@ impl<'p> TypeMap<'p> {
     pub(crate) fn io_struct(&mut self, name: &str, points: &[hir::IoPoint]) -> StructId {
         let fields = points
             .iter()
-            .map(|point| FieldDef {
-                name: point.name.clone(),
-                ty: self.mem_type(self.program.type_of(&point.place)),
+            .map(|point| {
+                let ty = self.mem_type(self.program.type_of(&point.place));
+                FieldDef::new(point.name.clone(), ty)
             })
             .collect();
         self.table.add_struct(name, fields)
@@ -75,10 +72,7 @@ impl<'p> TypeMap<'p> {
         let fields = def
             .members
             .iter()
-            .map(|member| FieldDef {
-                name: member.name.clone(),
-                ty: self.mem_type(member.ty),
-            })
+            .map(|member| FieldDef::new(member.name.clone(), self.mem_type(member.ty)))
             .collect();
         let made = self.table.add_struct(struct_name(&def.name), fields);
         self.structs.insert(id, made);

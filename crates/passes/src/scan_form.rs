@@ -99,10 +99,7 @@ pub(crate) fn add_state_leaf(module: &mut Module, name: &str, ty: Type, init: u6
         suffix += 1;
     }
     let index = fields.len() as u32;
-    fields.push(iecc_ir::FieldDef {
-        name: unique,
-        ty: MemType::Scalar(ty),
-    });
+    fields.push(iecc_ir::FieldDef::new(unique, MemType::Scalar(ty)));
     // The new field is the last one, so all offsets before it stay.
     let layout = Layout::new(&module.types);
     let size = layout.size(&module.types, MemType::Struct(module.state)) as usize;

@@ -2,7 +2,7 @@
 
 use super::Options;
 use crate::rng::Rng;
-use iecc_ir::{FieldDef, MemType, Place, Projection, StructId, Type, TypeTable};
+use iecc_ir::{FieldDef, MemType, Place, Projection, StructId, Type, TypeTable, View};
 
 /// Timers of a module.
 pub(super) const TIMERS: u32 = 3;
@@ -90,28 +90,20 @@ impl RandomTypes {
 
 /// One field of each type.
 fn each(memory: &[MemType]) -> Vec<FieldDef> {
-    let fields = memory.iter().enumerate().map(|(index, &ty)| FieldDef {
-        name: format!("each{index}"),
-        ty,
-    });
+    let fields = (0..).zip(memory);
+    let fields = fields.map(|(index, &ty): (usize, _)| FieldDef::new(format!("each{index}"), ty));
     fields.collect()
 }
 
 fn timers(table: &mut TypeTable) -> impl Iterator<Item = FieldDef> + use<> {
-    let field = |name: &str, ty| FieldDef {
-        name: name.to_owned(),
-        ty: MemType::Scalar(ty),
-    };
+    let field = |name: &str, ty| FieldDef::new(name, MemType::Scalar(ty));
     let fields = vec![
         field("acc", Type::I32),
         field("done", Type::I1),
         field("last", Type::I64),
     ];
     let ty = MemType::Struct(table.add_struct("TIMER", fields));
-    (0..TIMERS).map(move |index| FieldDef {
-        name: format!("timer{index}"),
-        ty,
-    })
+    (0..TIMERS).map(move |index| FieldDef::new(format!("timer{index}"), ty))
 }
 
 /// The field of the state that holds a timer: they are its last.
@@ -133,7 +125,19 @@ fn fields(rng: &mut Rng, memory: &[MemType], table: &mut TypeTable, least: usize
         } else {
             format!("x{index}")
         };
-        fields.push(FieldDef { name, ty });
+        let view = random_view(rng, table, ty);
+        fields.push(FieldDef::new(name, ty).with_view(view));
     }
     fields
+}
+
+fn random_view(rng: &mut Rng, table: &TypeTable, mut ty: MemType) -> View {
+    while let MemType::Array(id) = ty {
+        ty = table.array_type(id).element;
+    }
+    let view = rng.pick(&View::ALL);
+    match ty {
+        MemType::Scalar(scalar) if view.fits(scalar) => view,
+        MemType::Scalar(_) | MemType::Struct(_) | MemType::Array(_) => View::Plain,
+    }
 }

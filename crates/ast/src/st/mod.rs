@@ -23,6 +23,7 @@ pub mod literal;
 pub mod pou;
 mod print;
 pub mod stmt;
+pub mod time;
 mod walk;
 
 pub use arena::{Arena, Id, List, Stored};

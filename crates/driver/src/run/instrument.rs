@@ -4,10 +4,10 @@
 //! A watch is an output more, stored at every end of the scan. A poke is two inputs more, a value
 //! and whether it counts; where it counts, it is stored before everything else in the scan.
 
-use super::names::type_of;
+use super::names::{type_of, view_of};
 use iecc_ir::{
     FieldDef, Inst, InstData, MemType, Module, Place, PlaceType, Root, StructId, Terminator, Type,
-    Value,
+    Value, View,
 };
 
 /// What is added to the name of a poke for the input that says whether it counts.
@@ -61,7 +61,7 @@ fn scalar_at(module: &Module, place: &Place) -> Type {
 }
 
 /// Adds a field to a region; a name that is taken gets a mark.
-fn add_field(module: &mut Module, region: StructId, name: &str, ty: Type) -> u32 {
+fn add_field(module: &mut Module, region: StructId, name: &str, ty: Type, view: View) -> u32 {
     let fields = &mut module.types.structs[region].fields;
     let mut name = name.to_owned();
     while fields
@@ -70,16 +70,14 @@ fn add_field(module: &mut Module, region: StructId, name: &str, ty: Type) -> u32
     {
         name.push('\'');
     }
-    fields.push(FieldDef {
-        name,
-        ty: MemType::Scalar(ty),
-    });
+    fields.push(FieldDef::new(name, MemType::Scalar(ty)).with_view(view));
     fields.len() as u32 - 1
 }
 
 fn add_watch(module: &mut Module, watch: &Watch) -> Place {
     let ty = scalar_at(module, &watch.place);
-    let field = add_field(module, module.output, &watch.name, ty);
+    let view = view_of(module, &watch.place);
+    let field = add_field(module, module.output, &watch.name, ty, view);
     let output = Place::root(Root::Output).field(field);
     let func = &mut module.funcs[module.scan];
     for block in func.layout.clone() {
@@ -101,12 +99,13 @@ fn add_watch(module: &mut Module, watch: &Watch) -> Place {
 
 fn add_poke(module: &mut Module, poke: &Poke) -> (Place, Place) {
     let ty = scalar_at(module, &poke.place);
-    let value = add_field(module, module.input, &poke.name, ty);
+    let value = add_field(module, module.input, &poke.name, ty, View::Plain);
     let counts = add_field(
         module,
         module.input,
         &format!("{}{SET}", poke.name),
         Type::I1,
+        View::Plain,
     );
     let [value, counts] = [value, counts].map(|field| Place::root(Root::Input).field(field));
     let func = &mut module.funcs[module.scan];

@@ -6,7 +6,7 @@
 use iecc_diag::{Code, Diagnostic, closest};
 use iecc_ir::{
     FieldDef, Index, InstData, Layout, MemType, Module, Place, PlaceType, Projection, Root,
-    StructId, Type,
+    StructId, Type, View,
 };
 use iecc_source::Span;
 use std::collections::{BTreeMap, BTreeSet};
@@ -246,6 +246,25 @@ fn region_of(module: &Module, root: Root) -> Option<StructId> {
 pub(super) fn type_of(module: &Module, place: &Place) -> Option<PlaceType> {
     let start = MemType::Struct(region_of(module, place.root)?);
     Place::walk(&module.types, start, &place.path)
+}
+
+/// How people see the value at a place of a region; a single bit is plain.
+pub(super) fn view_of(module: &Module, place: &Place) -> View {
+    let is_bit = matches!(place.path.last(), Some(Projection::Bit(_)));
+    let is_field = |step: &Projection| matches!(step, Projection::Field(_));
+    let (Some(start), Some(last)) = (
+        region_of(module, place.root),
+        place.path.iter().rposition(is_field),
+    ) else {
+        return View::Plain;
+    };
+    let holder = Place::walk(&module.types, MemType::Struct(start), &place.path[..last]);
+    match (holder, place.path[last]) {
+        (Some(PlaceType::Mem(MemType::Struct(id))), Projection::Field(field)) if !is_bit => {
+            module.types.structs[id].fields[field as usize].view
+        }
+        _ => View::Plain,
+    }
 }
 
 /// The values at a place, each with its path below `name`. Times that `elapsed` keeps are left out:

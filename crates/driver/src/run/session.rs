@@ -1,12 +1,12 @@
 //! A run: engine, schedule, stimulus and trace together.
 
 use super::instrument::{Instruments, Poke, Watch, instrument};
-use super::names::{Names, leaves};
+use super::names::{Names, leaves, view_of};
 use super::stimulus::{BoundRow, BoundStimulus, Setting, Stimulus};
 use super::time::Schedule;
 use super::trace::Trace;
 use iecc_diag::{Code, Diagnostic, Diagnostics};
-use iecc_ir::{Layout, MemType, Module, Place, PlaceType, Region, Root, Scalar, Type};
+use iecc_ir::{Layout, MemType, Module, Place, PlaceType, Region, Root, Scalar, Type, View};
 use iecc_target::{Engine, Fault, region_bytes};
 use std::io;
 
@@ -23,6 +23,8 @@ pub struct Column {
     pub name: String,
     /// The type of its values.
     pub ty: Type,
+    /// How they are shown.
+    pub view: View,
     cell: Cell,
 }
 
@@ -184,7 +186,13 @@ impl Session {
             } else {
                 cell.ty
             };
-            Column { name, ty, cell }
+            let view = view_of(module, &place);
+            Column {
+                name,
+                ty,
+                view,
+                cell,
+            }
         });
         let mut pokes = instruments.pokes.iter();
         let settings = bound.columns.iter().map(|column| match &column.setting {

@@ -4,11 +4,11 @@
 //! without a program, and values are checked against the types of what they set.
 
 use super::csv_text::{Cell, records};
-use super::names::{NameError, Names, type_of};
+use super::names::{NameError, Names, type_of, view_of};
 use super::time::{TimeUnit, decimal};
 use super::value::parse_value;
 use iecc_diag::{Code, Diagnostic, Diagnostics};
-use iecc_ir::{Function, InstData, Module, Place, PlaceType, Projection, Root, Type};
+use iecc_ir::{Function, InstData, Module, Place, PlaceType, Projection, Root, Type, View};
 use iecc_source::{FileId, Span};
 use std::collections::BTreeMap;
 
@@ -52,6 +52,7 @@ pub(super) struct BoundColumn {
     pub(super) name: String,
     pub(super) setting: Setting,
     pub(super) ty: Type,
+    pub(super) view: View,
 }
 
 /// What happens at the first scan at or after a time: columns by number and the bits they get.
@@ -267,6 +268,7 @@ fn bind_column(
             format!("`{name}` is not one value; name one of its parts"),
         );
     };
+    let view = view_of(module, &place);
     let setting = match place.root {
         Root::Input => Setting::Input(place),
         Root::State => match copied_from(&place, copies) {
@@ -290,6 +292,7 @@ fn bind_column(
         name: name.to_owned(),
         setting,
         ty,
+        view,
     })
 }
 
@@ -336,7 +339,7 @@ fn copied_from(place: &Place, copies: &BTreeMap<Place, Place>) -> Option<Place> 
 }
 
 fn read_value(column: &BoundColumn, cell: &Cell, diagnostics: &mut Diagnostics) -> Option<u64> {
-    match parse_value(&cell.text, column.ty) {
+    match parse_value(&cell.text, column.ty, column.view) {
         Ok(bits) => Some(bits),
         Err(error) => {
             let what = if error.code == Code::E6008 {

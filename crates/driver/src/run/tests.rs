@@ -54,7 +54,11 @@ struct Prepared {
 }
 
 fn prepare(watches: &[&str], stimulus: &str) -> Prepared {
-    let mut module = parse_module(LATCH).unwrap();
+    prepare_module(LATCH, watches, stimulus)
+}
+
+fn prepare_module(module: &str, watches: &[&str], stimulus: &str) -> Prepared {
+    let mut module = parse_module(module).unwrap();
     let mut diagnostics = Diagnostics::new();
     let stimulus = Stimulus::parse(FileId::from_index(0), stimulus, &mut diagnostics);
     let watches: Vec<String> = watches.iter().map(|&w| w.to_owned()).collect();
@@ -120,6 +124,46 @@ t_ms,Start,Stop,Lamp,t.DN,t.PRE,t.ACC,lamps.0,LAMPS,r
     let changes = expected.replace("50,0,0,0,0,20,0,1,101,0.5\n", "");
     for mut engine in engines(&prepared.module) {
         assert_eq!(csv(&prepared, &mut *engine, ms(10, 6), true), changes);
+    }
+}
+
+/// Adds the input to a list of times and dates, and counts down from 0.
+const VIEWS: &str = "module views
+struct S { at: [2 x i64] as date_time }
+state { s: S, n: i8 as unsigned, w: i16 as bits }
+input { pause: i64 as time, day: i64 as date }
+output { both: i64 as time, clock: i64 as time_of_day }
+init w = 0x00ff
+scan @s
+fn @s[]() -> () {
+b0:
+  v0: i64 = load input.pause
+  v1: i64 = add v0, v0
+  store output.both, v1
+  store output.clock, v0
+  v2: i64 = load input.day
+  v3: i64 = add v2, v0
+  store state.s.at[1], v3
+  v4: i8 = load state.n
+  v5: i8 = const 1
+  v6: i8 = sub v4, v5
+  store state.n, v6
+  return
+}
+";
+
+#[test]
+fn values_are_shown_and_read_by_their_views() {
+    let stimulus = "t_ms,pause,day,w\n10,T#1h0.5s,D#2024-02-29,\n20,7,DATE#1970-01-02,16#F0\n";
+    let prepared = prepare_module(VIEWS, &["s", "n", "n.7", "w"], stimulus);
+    let expected = "\
+t_ms,pause,day,both,clock,s.at[0],s.at[1],n,n.7,w
+0,T#0s,D#1970-01-01,T#0s,TOD#00:00:00,DT#1970-01-01-00:00:00,DT#1970-01-01-00:00:00,255,1,16#FF
+10,T#1h500ms,D#2024-02-29,T#2h1s,TOD#01:00:00.5,DT#1970-01-01-00:00:00,DT#2024-02-29-01:00:00.5,254,1,16#FF
+20,T#7ns,D#1970-01-02,T#14ns,TOD#00:00:00.000000007,DT#1970-01-01-00:00:00,DT#1970-01-02-00:00:00.000000007,253,1,16#F0
+";
+    for mut engine in engines(&prepared.module) {
+        assert_eq!(csv(&prepared, &mut *engine, ms(10, 3), false), expected);
     }
 }
 

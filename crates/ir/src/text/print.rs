@@ -2,7 +2,7 @@
 
 use crate::{
     Block, Function, Index, Inst, InstData, Layout, MemType, Module, Origin, Place, Projection,
-    Root, Scalar, StructId, Target, Terminator, Type, TypeTable, Value,
+    Root, Scalar, StructId, Target, Terminator, Type, TypeTable, Value, View,
 };
 use cranelift_entity::SecondaryMap;
 use std::fmt::{self, Write};
@@ -48,6 +48,9 @@ fn header(out: &mut String, module: &Module) -> fmt::Result {
             let comma = if index == 0 { "" } else { "," };
             write!(out, "{comma} {}: ", Name(&field.name))?;
             mem_type(out, &module.types, field.ty)?;
+            if field.view != View::default() {
+                write!(out, " as {}", field.view.name())?;
+            }
         }
         writeln!(out, " }}")?;
     }

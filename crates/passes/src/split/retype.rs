@@ -144,6 +144,7 @@ impl Builder<'_> {
         let fields = old.fields.iter().map(|field| FieldDef {
             name: field.name.clone(),
             ty: self.keep(field.ty),
+            view: field.view,
         });
         let fields = fields.collect();
         let new = self.add(&old.name, fields);
@@ -192,14 +193,14 @@ impl Builder<'_> {
                         map.bits.insert((position, bit), fields.len() as u32);
                         let name = unique(&format!("{}.{bit}", field.name), &taken);
                         let ty = MemType::Scalar(Type::I1);
-                        fields.push(FieldDef { name, ty });
+                        fields.push(FieldDef::new(name, ty));
                     }
                 }
                 None => {
                     map.fields.insert(position, fields.len() as u32);
                     let ty = self.split(field.ty, key);
                     let name = field.name.clone();
-                    fields.push(FieldDef { name, ty });
+                    fields.push(FieldDef::new(name, ty).with_view(field.view));
                 }
             }
             key.pop();

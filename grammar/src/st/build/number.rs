@@ -1,9 +1,9 @@
 //! Integers and reals.
 
 use super::Build;
-use iecc_ast::RealText;
 use iecc_ast::rung::Radix;
 use iecc_ast::st::{Expr, ExprKind, Id, IntLiteral, Literal};
+use iecc_ast::{RealText, underlines_are_between_digits};
 use iecc_diag::{Code, Diagnostic};
 
 impl Build<'_, '_> {
@@ -128,16 +128,6 @@ fn value(digits: &str, base: u32) -> Result<u64, WrongDigits> {
     } else {
         Err(WrongDigits::Underline)
     }
-}
-
-/// Whether underlines stand alone and between letters or digits. Digits must not be missing.
-pub(super) fn underlines_are_between_digits(text: &str) -> bool {
-    text.split('_')
-        .all(|piece| piece.starts_with(alphanumeric) && piece.ends_with(alphanumeric))
-}
-
-fn alphanumeric(c: char) -> bool {
-    c.is_ascii_alphanumeric()
 }
 
 fn base(radix: Radix) -> u32 {

@@ -5,13 +5,13 @@ use super::Trace;
 use crate::run::Column;
 use crate::run::time::TimeUnit;
 use crate::run::value::write_value;
-use iecc_ir::Type;
+use iecc_ir::{Type, View};
 use std::io::{self, Write};
 
 /// Writes CSV.
 pub struct CsvTrace<W: Write> {
     writer: csv::Writer<W>,
-    types: Vec<Type>,
+    types: Vec<(Type, View)>,
     unit: TimeUnit,
     changes_only: bool,
     /// The row before.
@@ -30,7 +30,7 @@ impl<W: Write> CsvTrace<W> {
         writer.write_record([unit.column()].into_iter().chain(names))?;
         Ok(Self {
             writer,
-            types: columns.iter().map(|column| column.ty).collect(),
+            types: columns.iter().map(|c| (c.ty, c.view)).collect(),
             unit,
             changes_only,
             before: None,
@@ -53,11 +53,12 @@ impl<W: Write> Trace for CsvTrace<W> {
             return Ok(());
         }
         self.text.clear();
-        write_value(&mut self.text, Type::I64, now_ns / self.unit.nanoseconds());
+        let time = now_ns / self.unit.nanoseconds();
+        write_value(&mut self.text, Type::I64, View::Plain, time);
         self.writer.write_field(&self.text)?;
-        for (&ty, &bits) in self.types.iter().zip(values) {
+        for (&(ty, view), &bits) in self.types.iter().zip(values) {
             self.text.clear();
-            write_value(&mut self.text, ty, bits);
+            write_value(&mut self.text, ty, view, bits);
             self.writer.write_field(&self.text)?;
         }
         self.writer.write_record(None::<&[u8]>)?;

@@ -6,7 +6,7 @@ mod body;
 use super::lex::{Token, UNITS, tokens};
 use crate::{
     FieldDef, FuncId, Function, Image, Index, Layout, MAX_REGION_BYTES, MemType, Module, Origin,
-    OriginData, Place, Projection, Root, Scalar, StructId, Type, TypeTable,
+    OriginData, Place, Projection, Root, Scalar, StructId, Type, TypeTable, View,
 };
 use cranelift_entity::PrimaryMap;
 use iecc_source::{FileId, LineIndex, Span};
@@ -300,12 +300,28 @@ impl Parser {
         let fields = self.list("}", |p| {
             let name = p.name()?;
             p.expect(":")?;
-            Ok(FieldDef {
-                name,
-                ty: p.mem_type(0)?,
-            })
+            let ty = p.mem_type(0)?;
+            let view = p.view()?;
+            Ok(FieldDef { name, ty, view })
         })?;
         Ok(self.types.add_struct(name, fields))
+    }
+
+    /// `as view`, if it is there.
+    fn view(&mut self) -> Result<View> {
+        if !self.accept_word("as") {
+            return Ok(View::default());
+        }
+        let at = self.next;
+        let name = self.name()?;
+        match View::parse(&name) {
+            Some(view) => Ok(view),
+            None => {
+                self.next = at;
+                let names = View::ALL.map(View::name).join(", ");
+                self.fail(&format!("one of {names}"))
+            }
+        }
     }
 
     fn mem_type(&mut self, depth: u32) -> Result<MemType> {
