@@ -1,7 +1,7 @@
 //! The sets agree: every code has a page, and an example that gives it, alone of its kind.
 
 use iecc_diag::{Code, Diagnostics, Severity};
-use iecc_driver::{FrontOptions, Levels, Sources, compile};
+use iecc_driver::{Found, FrontOptions, Sources, compile, find};
 use iecc_source::SourceMap;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ fn examples() -> PathBuf {
 
 /// The example of a code: a source file, or a folder.
 fn example(code: Code) -> PathBuf {
-    let endings = ["L5X", "st", "scl", ""];
+    let endings = ["L5X", "st", "scl", "toml", ""];
     let mut paths = endings
         .map(|ending| examples().join(code.as_str()).with_extension(ending))
         .into_iter();
@@ -40,9 +40,23 @@ fn example(code: Code) -> PathBuf {
 fn codes_of(path: &std::path::Path) -> Vec<(Code, Severity)> {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let paths = [path.to_owned()];
-    let sources = Sources::load(&mut map, &paths, &Levels::default(), &mut diagnostics);
+    let (sources, options) = match find(&mut map, &paths, &mut diagnostics) {
+        None => (None, FrontOptions::default()),
+        Some(Found::Paths(paths)) => {
+            let options = FrontOptions::default();
+            let sources = Sources::load(&mut map, &paths, &options.levels, &mut diagnostics);
+            (sources, options)
+        }
+        Some(Found::Project(project)) => {
+            let options = project.options.clone();
+            (
+                project.load(&mut map, &options.levels, &mut diagnostics),
+                options,
+            )
+        }
+    };
     if let Some(sources) = sources {
-        compile(&map, &sources, &FrontOptions::default(), &mut diagnostics);
+        compile(&map, &sources, &options, &mut diagnostics);
     }
     let found = diagnostics.iter();
     found

@@ -1,11 +1,11 @@
 //! `iecc build`: a program as files of a target.
 
 use crate::messages::Messages;
-use crate::program::{Program, load_stimulus};
+use crate::program::{Compiled, Program, load_stimulus};
 use crate::terminal;
 use clap::ValueEnum;
 use iecc_driver::run::parse_duration;
-use iecc_driver::{Replay, VerilogRequest, build_verilog, load, write_artifacts};
+use iecc_driver::{Replay, VerilogRequest, VerilogSettings, build_verilog, load, write_artifacts};
 use std::path::PathBuf;
 
 /// Make hardware of a program
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     board: Option<String>,
 
     /// Which port is on which pin of the board
-    #[arg(long, value_name = "FILE", requires = "board")]
+    #[arg(long, value_name = "FILE")]
     pins: Option<PathBuf>,
 
     /// What the testbench sets the inputs to, and when: a CSV file as for `iecc run`; scans are one
@@ -66,10 +66,10 @@ fn tick(text: &str) -> Result<u64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
-    let Some(module) = arguments.program.compile(messages) else {
+    let Some(Compiled { module, project }) = arguments.program.compile(messages) else {
         return;
     };
-    let Some(request) = arguments.request(messages) else {
+    let Some(request) = arguments.request(&project.verilog, messages) else {
         return;
     };
     let made = match arguments.target {
@@ -89,8 +89,12 @@ pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
 }
 
 impl Arguments {
-    fn request(&self, messages: &mut Messages) -> Option<VerilogRequest> {
-        let pins = match &self.pins {
+    fn request(
+        &self,
+        project: &VerilogSettings,
+        messages: &mut Messages,
+    ) -> Option<VerilogRequest> {
+        let pins = match self.pins.as_ref().or(project.pins.as_ref()) {
             None => None,
             Some(path) => {
                 let file = load(&mut messages.map, path, &mut messages.diagnostics)?;
@@ -98,9 +102,9 @@ impl Arguments {
             }
         };
         Some(VerilogRequest {
-            clock_hz: self.clock_hz,
-            tick_ns: self.tick_ns,
-            board: self.board.clone(),
+            clock_hz: self.clock_hz.or(project.clock_hz),
+            tick_ns: self.tick_ns.or(project.tick_ns),
+            board: self.board.clone().or_else(|| project.board.clone()),
             pins,
             replay: match (&self.stimulus, self.scans) {
                 (Some(path), Some(scans)) => Some(Replay {

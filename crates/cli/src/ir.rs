@@ -40,11 +40,11 @@ fn parse_after(text: &str) -> Result<After, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) -> Result<(), NoSuchPlace> {
-    let Some(module) = arguments.program.compile(messages) else {
+    let Some(compiled) = arguments.program.compile(messages) else {
         return Ok(());
     };
     terminal::print(&show(
-        module,
+        compiled.module,
         arguments.pipeline(),
         arguments.after.as_ref(),
     )?);

@@ -1,10 +1,13 @@
 //! What commands that read a program have in common: the files, how to take them, and the stimulus.
 
 use crate::messages::Messages;
-use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use iecc_diag::Code;
-use iecc_driver::run::{Stimulus, parse_duration};
-use iecc_driver::{Dialect, Edits, FrontOptions, Init, Level, Levels, Sources, TimerBase, load};
+use iecc_driver::run::Stimulus;
+use iecc_driver::{
+    Choice, DIALECTS, Dialect, EDITS, Edits, Found, FrontOptions, INITS, Init, LEVELS, Level,
+    Levels, Project, Sources, TimerBase, find, find_choice, load,
+};
 use iecc_ir::Module;
 use std::path::{Path, PathBuf};
 
@@ -12,13 +15,32 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Program {
     /// The program: a Logix export (.L5X), or files of Structured Text (.st, .iecst); a folder
-    /// stands for all that lies in it
-    #[arg(value_name = "FILE", required = true)]
+    /// stands for all that lies in it, or for its project file [default: the project file iecc.toml
+    /// here or above, else the source files here]
+    #[arg(value_name = "FILE")]
     paths: Vec<PathBuf>,
 
-    /// Whose Structured Text it is
-    #[arg(long, value_enum, default_value = "iec", help_heading = "Program")]
-    dialect: DialectChoice,
+    /// Structured Text: whose it is [default: iec]
+    #[arg(long, value_parser = choice(DIALECTS), help_heading = "Program")]
+    dialect: Option<Dialect>,
+
+    /// Structured Text without a CONFIGURATION: the PROGRAM that runs [default: the only one]
+    #[arg(long, value_name = "NAME", help_heading = "Program")]
+    entry: Option<String>,
+
+    /// Logix: what tags hold at the start [default: cold]
+    #[arg(long, value_parser = choice(INITS), help_heading = "Program")]
+    init: Option<Init>,
+
+    /// Logix: which side of pending edits runs [default: as-exported]
+    #[arg(long, value_parser = choice(EDITS), help_heading = "Program")]
+    edits: Option<Edits>,
+
+    /// Logix: the unit of timer presets: of all timers (1us), or of some (twait1=1us,twaitw=1us)
+    /// [default: 1ms]
+    #[arg(long, value_name = "UNITS", value_parser = timer_unit, value_delimiter = ',',
+          help_heading = "Program")]
+    timer_base: Vec<String>,
 
     /// What becomes of warnings: `error`, `warn` or `allow`, for all, or with =CODE for one
     #[arg(short = 'W', long = "warnings", value_name = "LEVEL[=CODE]", value_parser = parse_level,
@@ -29,46 +51,17 @@ pub(crate) struct Program {
     #[arg(short = 'A', long = "allow", value_name = "CODE", value_parser = parse_allowed,
           help_heading = "Program")]
     allowed: Vec<WarningRule>,
-
-    /// What tags hold at the start
-    #[arg(long, value_enum, default_value = "cold", help_heading = "Program")]
-    init: InitChoice,
-
-    /// Which side of pending edits runs [default: the one that ran at export]
-    #[arg(long, value_enum, help_heading = "Program")]
-    edits: Option<EditsChoice>,
-
-    /// The unit of timer presets: of all timers (1us), or of some (twait1=1us,twaitw=1us)
-    /// [default: 1ms]
-    #[arg(long, value_name = "UNITS", value_parser = parse_base, value_delimiter = ',',
-          help_heading = "Program")]
-    timer_base: Vec<Base>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum InitChoice {
-    /// Zero, but presets and constants as exported
-    Cold,
-    /// Every value as exported
-    Export,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum EditsChoice {
-    /// The rungs before the edits
-    Orig,
-    /// The edited rungs
-    Test,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum DialectChoice {
-    /// IEC 61131-3, edition 3
-    Iec,
-    /// IEC 61131-3, edition 2
-    Iec2,
-    /// CODESYS and TwinCAT
-    Codesys,
+/// The values of an option, by name.
+fn choice<T: Copy + Send + Sync>(
+    choices: &'static [Choice<T>],
+) -> impl TypedValueParser<Value = T> {
+    let values = choices
+        .iter()
+        .map(|choice| PossibleValue::new(choice.name).help(choice.help));
+    PossibleValuesParser::new(values)
+        .map(|name| find_choice(choices, &name).expect("clap knows the names"))
 }
 
 /// What becomes of a warning, or of all.
@@ -83,12 +76,7 @@ fn parse_level(text: &str) -> Result<WarningRule, String> {
         Some((level, code)) => (level, Some(code)),
         None => (text, None),
     };
-    let level = match level.to_ascii_lowercase().as_str() {
-        "error" => Level::Error,
-        "warn" => Level::Warn,
-        "allow" => Level::Allow,
-        _ => return Err("a level is error, warn or allow".to_owned()),
-    };
+    let level = find_choice(LEVELS, level).ok_or("a level is error, warn or allow")?;
     rule(level, code)
 }
 
@@ -108,75 +96,58 @@ fn rule(level: Level, code: Option<&str>) -> Result<WarningRule, String> {
     Ok(WarningRule { level, code })
 }
 
-/// A unit, of one timer or of all.
-#[derive(Debug, Clone)]
-struct Base {
-    timer: Option<String>,
-    unit_ns: u64,
+fn timer_unit(text: &str) -> Result<String, String> {
+    TimerBase::default().set(text).map(|()| text.to_owned())
 }
 
-fn parse_base(text: &str) -> Result<Base, String> {
-    let (timer, unit) = match text.rsplit_once('=') {
-        Some((timer, unit)) => (Some(timer.trim().to_owned()), unit),
-        None => (None, text),
-    };
-    let unit_ns = parse_duration(unit.trim()).map_err(|diagnostic| diagnostic.message)?;
-    if unit_ns == 0 {
-        return Err("a unit is not zero".to_owned());
-    }
-    Ok(Base { timer, unit_ns })
+/// A program that compiles.
+pub(crate) struct Compiled {
+    /// Ready for its first scan.
+    pub(crate) module: Module,
+    /// What its project file says.
+    pub(crate) project: Project,
 }
 
 impl Program {
-    fn options(&self) -> FrontOptions {
-        FrontOptions {
-            init: match self.init {
-                InitChoice::Cold => Init::Cold,
-                InitChoice::Export => Init::Export,
-            },
-            edits: match self.edits {
-                None => Edits::AsExported,
-                Some(EditsChoice::Orig) => Edits::Original,
-                Some(EditsChoice::Test) => Edits::Test,
-            },
-            timer_base: self.timer_base(),
-            dialect: match self.dialect {
-                DialectChoice::Iec => Dialect::Iec,
-                DialectChoice::Iec2 => Dialect::IecEdition2,
-                DialectChoice::Codesys => Dialect::Codesys,
-            },
-            levels: self.levels(),
-        }
-    }
-
-    fn timer_base(&self) -> TimerBase {
-        let mut timer_base = TimerBase::default();
-        for base in &self.timer_base {
-            match &base.timer {
-                Some(timer) => timer_base.timers.push((timer.clone(), base.unit_ns)),
-                None => timer_base.unit_ns = base.unit_ns,
+    /// Puts what the command line says over what the project file says.
+    fn override_options(&self, options: &mut FrontOptions) {
+        fn set<T: Clone>(option: &mut T, value: Option<&T>) {
+            if let Some(value) = value {
+                option.clone_from(value);
             }
         }
-        timer_base
-    }
-
-    fn levels(&self) -> Levels {
-        let mut levels = Levels::default();
+        set(&mut options.dialect, self.dialect.as_ref());
+        set(&mut options.init, self.init.as_ref());
+        set(&mut options.edits, self.edits.as_ref());
+        if self.entry.is_some() {
+            options.entry.clone_from(&self.entry);
+        }
+        for unit in &self.timer_base {
+            options.timer_base.set(unit).expect("it was tried");
+        }
         for rule in self.allowed.iter().chain(&self.warnings) {
             match rule.code {
-                None => levels.set_others(rule.level),
-                Some(code) => levels.set(code, rule.level).expect("it was tried"),
+                None => options.levels.set_others(rule.level),
+                Some(code) => options.levels.set(code, rule.level).expect("it was tried"),
             }
         }
-        levels
     }
 
-    /// Reads the program and compiles it to a module ready for its first scan.
-    pub(crate) fn compile(&self, messages: &mut Messages) -> Option<Module> {
+    /// Reads the program and compiles it.
+    pub(crate) fn compile(&self, messages: &mut Messages) -> Option<Compiled> {
         let (map, diagnostics) = (&mut messages.map, &mut messages.diagnostics);
-        let options = self.options();
-        let sources = Sources::load(map, &self.paths, &options.levels, diagnostics)?;
-        iecc_driver::compile(map, &sources, &options, diagnostics)
+        let (mut project, paths) = match find(map, &self.paths, diagnostics)? {
+            Found::Project(project) => (*project, None),
+            Found::Paths(paths) => (Project::default(), Some(paths)),
+        };
+        self.override_options(&mut project.options);
+        let levels = &project.options.levels;
+        let sources = match paths {
+            Some(paths) => Sources::load(map, &paths, levels, diagnostics),
+            None => project.load(map, levels, diagnostics),
+        };
+        let module = iecc_driver::compile(map, &sources?, &project.options, diagnostics)?;
+        Some(Compiled { module, project })
     }
 }
 

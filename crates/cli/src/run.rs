@@ -1,7 +1,7 @@
 //! `iecc run`: scans on an engine, with a stimulus, into traces.
 
 use crate::messages::Messages;
-use crate::program::{Program, load_stimulus};
+use crate::program::{Compiled, Program, load_stimulus};
 use clap::ValueEnum;
 use iecc_diag::Diagnostic;
 use iecc_driver::EngineKind;
@@ -11,6 +11,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Duration;
+
+/// The time from one scan to the next where nothing says it.
+const USUAL_PERIOD_NS: u64 = 10_000_000;
 
 /// Execute scans of a program on this computer
 #[derive(Debug, clap::Args)]
@@ -31,9 +34,9 @@ pub(crate) struct Arguments {
     #[arg(long = "for", id = "length", value_name = "TIME", value_parser = time)]
     length_ns: Option<u64>,
 
-    /// The time from one scan to the next
-    #[arg(long = "period", value_name = "TIME", default_value = "10ms", value_parser = time)]
-    period_ns: u64,
+    /// The time from one scan to the next [default: 10ms]
+    #[arg(long = "period", value_name = "TIME", value_parser = time)]
+    period_ns: Option<u64>,
 
     /// What inputs and tags are set to, and when: a CSV file with a column t_ms or t_us
     #[arg(long, value_name = "FILE")]
@@ -72,13 +75,15 @@ fn time(text: &str) -> Result<u64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
-    let Some(module) = arguments.program.compile(messages) else {
+    let Some(Compiled { module, project }) = arguments.program.compile(messages) else {
         return;
     };
+    let period_ns = arguments.period_ns.or(project.period_ns);
+    let period_ns = period_ns.unwrap_or(USUAL_PERIOD_NS);
     let Some((module, session)) = arguments.prepare(module, messages) else {
         return;
     };
-    if let Err(found) = arguments.execute(&module, &session) {
+    if let Err(found) = arguments.execute(&module, &session, period_ns) {
         for diagnostic in found {
             messages.diagnostics.push(diagnostic);
         }
@@ -100,25 +105,30 @@ impl Arguments {
         Some((module, session))
     }
 
-    fn schedule(&self) -> Result<Schedule, Diagnostic> {
+    fn schedule(&self, period_ns: u64) -> Result<Schedule, Diagnostic> {
         match (self.scans, self.length_ns) {
-            (Some(scans), _) => Schedule::for_scans(self.period_ns, scans),
+            (Some(scans), _) => Schedule::for_scans(period_ns, scans),
             (None, length_ns) => {
                 let length_ns = length_ns.expect("clap asks for one of the two");
-                Schedule::for_duration(self.period_ns, length_ns)
+                Schedule::for_duration(period_ns, length_ns)
             }
         }
     }
 
-    fn execute(&self, module: &Module, session: &Session) -> Result<(), Vec<Diagnostic>> {
-        let schedule = self.schedule().map_err(|d| vec![d])?;
+    fn execute(
+        &self,
+        module: &Module,
+        session: &Session,
+        period_ns: u64,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let schedule = self.schedule(period_ns).map_err(|d| vec![d])?;
         let mut traces = Traces(Vec::new());
         for path in &self.trace {
             let columns = session.columns();
             let trace = TraceFile::create(path, &module.name, columns, schedule, self.changes);
             traces.0.push(trace.map_err(|d| vec![d])?);
         }
-        let mut engine = self.engine().start(module, self.period_ns)?;
+        let mut engine = self.engine().start(module, period_ns)?;
         let bar = progress_bar(schedule.scans());
         let told = session.run(engine.as_mut(), schedule, &mut traces, &mut |scan| {
             bar.set_position(scan);

@@ -85,3 +85,64 @@ fn every_mistake_of_every_file_is_told_in_one_run() {
         assert!(told, "{code} {messages}");
     }
 }
+
+#[test]
+fn a_project_is_found_from_any_folder_below_it() {
+    let folder = folder(&[
+        (
+            "iecc.toml",
+            "sources = \"line\"\nperiod = \"20ms\"\n[warnings]\nall = \"error\"\n",
+        ),
+        ("line/a.L5X", WARNS),
+        ("line/deep/notes.txt", ""),
+    ]);
+    let below = folder.path().join("line/deep");
+    let output = iecc(&below, &["check"]);
+    assert_eq!(output.status.code(), Some(1));
+    let message = stderr(&output);
+    assert!(message.contains("error[E6023]"), "{message}");
+    assert!(message.contains("../../line/a.L5X"), "{message}");
+    // The command line goes before the project file.
+    assert_eq!(
+        iecc(&below, &["check", "-W", "warn"]).status.code(),
+        Some(0)
+    );
+    // Elsewhere the project has to be named.
+    assert_eq!(iecc(Path::new("/"), &["check"]).status.code(), Some(1));
+    for path in [folder.path().to_owned(), folder.path().join("iecc.toml")] {
+        let output = iecc(Path::new("/"), &["check", path.to_str().expect("UTF-8")]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(
+            stderr(&output).contains("error[E6023]"),
+            "{}",
+            stderr(&output)
+        );
+    }
+}
+
+#[test]
+fn the_period_of_the_project_is_that_of_a_run() {
+    let folder = folder(&[("iecc.toml", "period = \"20ms\"\n"), ("a.L5X", WARNS)]);
+    let run = [
+        "run", "--scans", "2", "--trace", "t.csv", "--engine", "interp",
+    ];
+    assert_eq!(iecc(folder.path(), &run).status.code(), Some(0));
+    let trace = fs::read_to_string(folder.path().join("t.csv")).expect("a trace");
+    assert_eq!(trace, "t_ms\n0\n20\n");
+    let run = [&run[..], &["--period", "5ms"]].concat();
+    assert_eq!(iecc(folder.path(), &run).status.code(), Some(0));
+    let trace = fs::read_to_string(folder.path().join("t.csv")).expect("a trace");
+    assert_eq!(trace, "t_ms\n0\n5\n");
+}
+
+#[test]
+fn without_a_project_the_sources_of_the_folder_are_meant() {
+    let folder = folder(&[("a.L5X", WARNS), ("below/b.st", "")]);
+    let output = iecc(folder.path(), &["check"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    fs::remove_file(folder.path().join("a.L5X")).expect("removed");
+    let output = iecc(folder.path(), &["check"]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = "no file is named, and there is neither a project file `iecc.toml` here or above, nor a source file here";
+    assert!(stderr(&output).contains(told), "{}", stderr(&output));
+}

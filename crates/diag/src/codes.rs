@@ -167,6 +167,12 @@ codes! {
     E6052 Error "no source file is there";
     E6053 Warning "file in a folder is left out";
     E6054 Error "folder is too deep or too large";
+    E6060 Error "project file is not TOML";
+    E6061 Error "key of the project file does not exist";
+    E6062 Error "value in the project file is wrong";
+    E6063 Error "source of the project does not exist";
+    E6064 Error "name for an input or output is taken";
+    E6065 Error "option means nothing for this language";
     E6080 Error "file is no case of the conformance suite";
     E6081 Error "case of the conformance suite failed";
     // 7 target cannot express this

@@ -4,6 +4,8 @@
 //! prescan over the initial values with the interpreter. Each reports everything it finds; each
 //! gives a result only when there is no error.
 
+use crate::rename::{Rename, rename};
+use crate::run::parse_duration;
 use crate::{Language, Levels, Sources};
 use iecc_ast::Names;
 use iecc_diag::{Code, Diagnostic, Diagnostics};
@@ -28,6 +30,12 @@ pub struct FrontOptions {
     pub dialect: Dialect,
     /// What becomes of warnings.
     pub levels: Levels,
+    /// The name of the program, in place of the one that its source gives.
+    pub name: Option<String>,
+    /// The program that runs, where the source leaves it open.
+    pub entry: Option<String>,
+    /// Inputs and outputs that get another name.
+    pub renames: Vec<Rename>,
 }
 
 /// The unit of timer presets.
@@ -48,6 +56,28 @@ impl Default for TimerBase {
     }
 }
 
+impl TimerBase {
+    /// Sets a unit: that of all timers (`1us`), or that of one (`twait1=1us`).
+    ///
+    /// # Errors
+    /// Says what is wrong with the text.
+    pub fn set(&mut self, text: &str) -> Result<(), String> {
+        let (timer, unit) = match text.rsplit_once('=') {
+            Some((timer, unit)) => (Some(timer.trim()), unit),
+            None => (None, text),
+        };
+        let unit_ns = parse_duration(unit.trim()).map_err(|diagnostic| diagnostic.message)?;
+        if unit_ns == 0 {
+            return Err("a unit is not zero".to_owned());
+        }
+        match timer {
+            Some(timer) => self.timers.push((timer.to_owned(), unit_ns)),
+            None => self.unit_ns = unit_ns,
+        }
+        Ok(())
+    }
+}
+
 /// Decides what the program means.
 pub fn check(
     map: &SourceMap,
@@ -56,6 +86,7 @@ pub fn check(
     diagnostics: &mut Diagnostics,
 ) -> Option<hir::Program> {
     let mut found = Diagnostics::new();
+    misfits(sources.language(), options, &mut found);
     let program = match sources.language() {
         Language::Logix => check_logix(map, sources, options, &mut found),
         Language::StructuredText => check_text(map, sources, options, &mut found),
@@ -65,6 +96,33 @@ pub fn check(
     let failed = found.has_errors();
     diagnostics.append(found);
     program.filter(|_| !failed)
+}
+
+/// Choices that mean nothing for the language are refused, not passed over.
+fn misfits(language: Language, options: &FrontOptions, found: &mut Diagnostics) {
+    let usual = FrontOptions::default();
+    let (wrong, what) = match language {
+        Language::Logix => (
+            [
+                (options.dialect != usual.dialect, "a dialect"),
+                (options.entry.is_some(), "an entry program"),
+                (false, ""),
+            ],
+            "a Logix export",
+        ),
+        Language::StructuredText => (
+            [
+                (options.init != usual.init, "the choice of initial values"),
+                (options.edits != usual.edits, "the choice of edits"),
+                (options.timer_base != usual.timer_base, "a unit of timers"),
+            ],
+            "Structured Text",
+        ),
+    };
+    for (_, option) in wrong.into_iter().filter(|(is_wrong, _)| *is_wrong) {
+        let message = format!("{option} is given, which means nothing for {what}");
+        found.push(Diagnostic::without_place(Code::E6065, message));
+    }
 }
 
 fn check_logix(
@@ -116,6 +174,10 @@ pub fn compile(
     };
     // Prescan has no faults: it only stores.
     module.image = run_prescan(verified).unwrap_or_else(|fault| panic!("prescan failed: {fault}"));
+    rename(&mut module, &options.renames, diagnostics)?;
+    if let Some(name) = &options.name {
+        module.name.clone_from(name);
+    }
     Some(module)
 }
 

@@ -4,6 +4,7 @@
 //! through the functions here, so there is one pipeline and no second, laxer path.
 
 mod build;
+mod choices;
 mod comments;
 mod constants;
 mod engine;
@@ -13,12 +14,15 @@ mod levels;
 mod output;
 mod parallel;
 mod pipeline;
+mod project;
 mod refusal;
+mod rename;
 pub mod run;
 pub mod sim;
 mod sources;
 
 pub use build::{Replay, VerilogRequest, build_verilog};
+pub use choices::{Choice, DIALECTS, EDITS, INITS, LEVELS, find as find_choice};
 pub use engine::EngineKind;
 pub use explain::{explain_instruction, list_instructions};
 pub use front::{FrontOptions, TimerBase, check, compile};
@@ -28,4 +32,6 @@ pub use levels::{Level, Levels};
 pub use output::write_artifacts;
 pub use parallel::parallel_map;
 pub use pipeline::{After, NoSuchPlace, Pipeline, list_passes, show};
+pub use project::{Found, PROJECT_FILE, Project, VerilogSettings, find};
+pub use rename::Rename;
 pub use sources::{FRONTENDS, FrontEnd, Language, Sources, load};

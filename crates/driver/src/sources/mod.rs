@@ -8,13 +8,14 @@
 mod folder;
 mod kinds;
 
+pub(crate) use folder::{Folder, entries};
 pub use kinds::{FRONTENDS, FrontEnd, Language};
 
 use crate::Levels;
-use folder::Folder;
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_source::{FileId, SourceMap};
 use kinds::{Kind, kind_of, known_endings};
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -184,6 +185,11 @@ impl<'d> Search<'d> {
             self.diagnostics.push(nothing(message));
         }
     }
+}
+
+/// Whether a path names a source file.
+pub(crate) fn is_source(path: &Path) -> bool {
+    matches!(kind_of(path), Kind::Source(_))
 }
 
 pub(crate) fn nothing(message: String) -> Diagnostic {
