@@ -591,7 +591,7 @@ fn what_hardware_cannot_do_is_refused_with_every_reason() {
         .map(|error| {
             let label = error
                 .origin
-                .map(|origin| module.origins[origin].label.clone());
+                .map(|origin| module.origins[origin].label.to_string());
             (error.refusal, label.unwrap_or_default())
         })
         .collect();

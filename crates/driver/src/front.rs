@@ -199,6 +199,7 @@ fn lower_options(
     (timer_units.len() == base.timers.len()).then_some(iecc_lower::Options {
         timer_unit_ns: base.unit_ns,
         timer_units,
+        ..iecc_lower::Options::default()
     })
 }
 

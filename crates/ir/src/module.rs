@@ -3,6 +3,7 @@
 use crate::{Function, Image, MemType, Place, Root, StructId, TypeTable};
 use cranelift_entity::{PrimaryMap, entity_impl};
 use iecc_source::Span;
+use std::sync::Arc;
 
 /// Names a function of a module.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -18,7 +19,7 @@ entity_impl!(Origin, "origin");
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OriginData {
     /// For people: "MainProgram/MainRoutine rung 5".
-    pub label: String,
+    pub label: Arc<str>,
     /// The source text, when there is one.
     pub span: Option<Span>,
 }

@@ -3,7 +3,7 @@
 //! The condition is an SSA value. What changes memory under the condition with plain bits is written
 //! as bit arithmetic, everything else in a block of its own that is left out when false.
 
-use crate::types::{place, scalar};
+use crate::types::{elementary, place, result_types, scalar};
 use crate::values::{self, Extend};
 use crate::{Lowering, MILLISECOND_NS};
 use iecc_ir::{
@@ -20,10 +20,10 @@ pub(crate) fn unit(lowering: &mut Lowering<'_>, pou: &Pou, rungs: &[Rung]) -> Fu
     let params: Vec<Type> = pou
         .parameters
         .iter()
-        .map(|parameter| value_type(lowering.program, parameter))
+        .map(|parameter| scalar(elementary(lowering.program.type_of(parameter))))
         .collect();
     let mut unit = Unit {
-        builder: FunctionBuilder::new(pou.name.clone(), &params, &results(pou)),
+        builder: FunctionBuilder::new(pou.name.clone(), &params, &result_types(pou)),
         lowering,
         pou,
         label: String::new(),
@@ -32,22 +32,6 @@ pub(crate) fn unit(lowering: &mut Lowering<'_>, pou: &Pou, rungs: &[Rung]) -> Fu
     rungs.iter().for_each(|rung| unit.rung(rung));
     unit.leave(false, &[]);
     unit.builder.finish()
-}
-
-fn value_type(program: &hir::Program, place: &hir::Place) -> Type {
-    match program.type_of(place) {
-        hir::Type::Elementary(ty) => scalar(ty),
-        hir::Type::Struct(_) | hir::Type::Array(_) => panic!("values are passed one by one"),
-    }
-}
-
-/// The result types of a unit's function.
-fn results(pou: &Pou) -> Vec<Type> {
-    if pou.results.is_empty() {
-        return Vec::new();
-    }
-    let values = pou.results.iter().map(|ty| scalar(*ty));
-    std::iter::once(Type::I1).chain(values).collect()
 }
 
 struct Unit<'l, 'p> {
@@ -391,7 +375,7 @@ impl Unit<'_, '_> {
         let func = FuncId::from_u32(pou.index() as u32);
         let values = self
             .builder
-            .call(func, Vec::new(), arguments, &results(callee));
+            .call(func, Vec::new(), arguments, &result_types(callee));
         let Some((&given, values)) = values.split_first().filter(|_| !returns.is_empty()) else {
             return;
         };
@@ -402,10 +386,7 @@ impl Unit<'_, '_> {
     }
 
     fn argument(&mut self, input: &Operand, parameter: &hir::Place) -> Value {
-        let ty = match self.lowering.program.type_of(parameter) {
-            hir::Type::Elementary(ty) => ty,
-            hir::Type::Struct(_) | hir::Type::Array(_) => panic!("values are passed one by one"),
-        };
+        let ty = elementary(self.lowering.program.type_of(parameter));
         self.operand(input, ty, Extend::Sign)
     }
 

@@ -6,34 +6,59 @@
 //! * The state mirrors the tags, I/O words included. The scan function copies inputs into these
 //!   words, calls the main routines in order, and copies the words to the outputs.
 //! * Timers and counters are library functions in the text form of the IR, linked here.
+//! * Bodies in text become one function each, by the name of the unit; their errors are tested for
+//!   under the policy of [`OnFault`].
+//! * Tasks run in one scan function, see [`tasks`].
 //! * `prescan` walks every routine once and does what the instruction table says.
 //!
 //! Lowering decides nothing about meaning and cannot fail on a program without errors.
 
+mod initial;
 mod ladder;
 mod library;
 mod scan;
+mod tasks;
 mod text;
 mod types;
 mod values;
 
 use cranelift_entity::PrimaryMap;
-use iecc_ir::{FuncId, Function, Image, Layout, Module, Origin, OriginData, Place};
+use iecc_ir::{FieldDef, FuncId, Function, MemType, Module, Origin, OriginData, Place, Type, View};
 use iecc_sema::hir;
 use iecc_source::Span;
 use library::Library;
+use std::collections::BTreeSet;
+use std::sync::Arc;
 use types::TypeMap;
 
 /// One millisecond, the unit of Logix timers.
 pub const MILLISECOND_NS: u64 = 1_000_000;
 
-/// Choices that change how timers count.
+/// Passes that a loop of a body in text may take, unless said otherwise.
+pub const LOOP_LIMIT: u64 = 10_000_000;
+
+/// What an error of a body in text does, such as an index out of bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OnFault {
+    /// Abandons the scan.
+    #[default]
+    Trap,
+    /// Sets bit n-1 of the `USINT` `__status` in the state, n being the number of the fault, and goes on
+    /// with a value that is defined for every error. The bits stay set.
+    Continue,
+}
+
+/// Choices of the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
     /// Unit of all timers but those below, in nanoseconds.
     pub timer_unit_ns: u64,
     /// Timers with a unit of their own.
     pub timer_units: Vec<(hir::Place, u64)>,
+    /// What errors of bodies in text do.
+    pub on_fault: OnFault,
+    /// Passes that each entry of a loop of a body in text may take.
+    pub loop_limit: u64,
 }
 
 impl Default for Options {
@@ -41,6 +66,8 @@ impl Default for Options {
         Self {
             timer_unit_ns: MILLISECOND_NS,
             timer_units: Vec::new(),
+            on_fault: OnFault::default(),
+            loop_limit: LOOP_LIMIT,
         }
     }
 }
@@ -48,12 +75,16 @@ impl Default for Options {
 /// Lowers a program that has no errors.
 pub fn lower(program: &hir::Program, options: &Options) -> Module {
     let mut types = TypeMap::new(program);
-    let state = types.state_struct();
+    let mut fields = types.tag_fields();
+    let tasks = tasks::add_state(program, &mut types, &mut fields);
+    let status = status(program, options, &mut fields);
+    let state = types.state_struct(fields);
     let input = types.io_struct("input", &program.inputs);
     let output = types.io_struct("output", &program.outputs);
     let mut lowering = Lowering {
         program,
         options,
+        status,
         funcs: PrimaryMap::new(),
         origins: PrimaryMap::new(),
         library: Library::new(),
@@ -67,34 +98,53 @@ pub fn lower(program: &hir::Program, options: &Options) -> Module {
         };
         lowering.funcs[FuncId::from_u32(index as u32)] = function;
     }
-    let scan = scan::scan(&mut lowering);
-    let prescan = scan::prescan(&mut lowering);
+    let scan = scan::scan(&mut lowering, &tasks);
     let scan = lowering.funcs.push(scan);
+    let prescan = scan::prescan(&mut lowering);
     let prescan = lowering.funcs.push(prescan);
-    let layout = Layout::new(lowering.types.table());
-    let mut image = Image::zero(&layout, lowering.types.table(), state);
-    for (place, bits) in initial_leaves(program) {
-        image.set_place(&layout, lowering.types.table(), state, &place, bits);
-    }
     Module {
         name: program.name.clone(),
+        image: initial::image(program, &lowering.types, state),
         types: lowering.types.into_table(),
         state,
         input,
         output,
-        image,
         funcs: lowering.funcs,
         scan,
         prescan: Some(prescan),
-        names: names(program),
+        names: names(program, &tasks),
         origins: lowering.origins,
     }
+}
+
+/// Adds the status to the state, where errors of bodies in text do not stop.
+fn status(program: &hir::Program, options: &Options, fields: &mut Vec<FieldDef>) -> Option<u32> {
+    let is_text = |pou: &hir::Pou| matches!(pou.body, hir::Body::Text(_));
+    if options.on_fault == OnFault::Trap || !program.pous.iter().any(is_text) {
+        return None;
+    }
+    let taken = |name: &str| fields.iter().any(|field| field.name == name);
+    let name = fresh("__status", taken);
+    let ty = MemType::Scalar(Type::I8);
+    fields.push(FieldDef::new(name, ty).with_view(View::Bits));
+    Some(fields.len() as u32 - 1)
+}
+
+/// A name of our own beside those of the user.
+fn fresh(name: &str, taken: impl Fn(&str) -> bool) -> String {
+    let mut name = name.to_owned();
+    while taken(&name) {
+        name.push('\'');
+    }
+    name
 }
 
 /// What is built while functions are lowered.
 struct Lowering<'p> {
     program: &'p hir::Program,
     options: &'p Options,
+    /// The field of the state that says which errors there were.
+    status: Option<u32>,
     funcs: PrimaryMap<FuncId, Function>,
     origins: PrimaryMap<Origin, OriginData>,
     library: Library,
@@ -110,9 +160,20 @@ impl Lowering<'_> {
     }
 
     fn origin(&mut self, label: &str, span: Option<Span>) -> Origin {
+        self.shared_origin(&Arc::from(label), span)
+    }
+
+    fn shared_origin(&mut self, label: &Arc<str>, span: Option<Span>) -> Origin {
         self.origins.push(OriginData {
-            label: label.to_owned(),
+            label: Arc::clone(label),
             span,
+        })
+    }
+
+    /// A name for a function of our own.
+    fn fresh_function(&self, name: &str) -> String {
+        fresh(name, |name| {
+            self.funcs.values().any(|func| func.name == name)
         })
     }
 
@@ -129,21 +190,23 @@ impl Lowering<'_> {
     }
 }
 
-fn initial_leaves(program: &hir::Program) -> impl Iterator<Item = (Place, u64)> + '_ {
-    program.tags.iter().enumerate().flat_map(|(index, tag)| {
-        tag.initial.iter().map(move |(path, bits)| {
-            let place = hir::Place {
-                tag: hir::TagId::from_index(index),
-                path: path.clone(),
-            };
-            (types::place(&place), *bits)
-        })
-    })
-}
-
-fn names(program: &hir::Program) -> Vec<(String, Place)> {
-    let names = program.names.iter();
-    names
+/// Names for places: those of the program, then ours where they are free.
+fn names(program: &hir::Program, tasks: &tasks::TaskState) -> Vec<(String, Place)> {
+    let own = program.names.iter();
+    let mut names: Vec<(String, Place)> = own
         .map(|(name, place)| (name.clone(), types::place(place)))
-        .collect()
+        .collect();
+    let ours = tasks::names(program, tasks);
+    if ours.is_empty() {
+        return names;
+    }
+    let tags = program.tags.iter().map(|tag| &tag.name);
+    let taken: BTreeSet<String> = tags
+        .chain(names.iter().map(|(name, _)| name))
+        .map(|name| name.to_ascii_lowercase())
+        .collect();
+    let is_free = |name: &str| !taken.contains(&name.to_ascii_lowercase());
+    names.extend(ours.into_iter().filter(|(name, _)| is_free(name)));
+    names.sort_by_key(|(name, _)| name.to_ascii_lowercase());
+    names
 }

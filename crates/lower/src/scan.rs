@@ -1,29 +1,23 @@
 //! The functions of the whole program: `scan`, one activation of the task, and `prescan`.
 
 use crate::ladder::{copy, counter_name, timer_name};
-use crate::types::{place, scalar};
+use crate::tasks::{self, TaskState};
+use crate::types::{place, result_types, scalar};
 use crate::{Lowering, MILLISECOND_NS};
 use iecc_ir::{FuncId, Function, FunctionBuilder, Place, Root, Type};
 use iecc_sema::hir::{self, Action, Body, Instruction, Op, Pou, PouId, Prescan};
 
 /// Inputs to state words, the main routines in order, state words to outputs.
-pub(crate) fn scan(lowering: &mut Lowering<'_>) -> Function {
+pub(crate) fn scan(lowering: &mut Lowering<'_>, hidden: &TaskState) -> Function {
     let program = lowering.program;
-    let mut builder = FunctionBuilder::new("scan", &[], &[]);
+    let mut builder = FunctionBuilder::new(lowering.fresh_function("scan"), &[], &[]);
     let origin = lowering.origin("inputs", None);
     builder.set_origin(Some(origin));
     for (index, point) in program.inputs.iter().enumerate() {
         let public = Place::root(Root::Input).field(index as u32);
-        let ty = point_type(program, point);
-        copy(&mut builder, public, place(&point.place), ty);
+        move_point(program, &mut builder, point, public, place(&point.place));
     }
-    for task in &program.tasks {
-        let origin = lowering.origin(&task.name, None);
-        builder.set_origin(Some(origin));
-        for main in &task.calls {
-            call_main(program, &mut builder, *main);
-        }
-    }
+    tasks::run(lowering, hidden, &mut builder);
     if let Some(first_scan) = &program.first_scan {
         let zero = builder.constant(Type::I1, 0);
         builder.store(place(first_scan), zero);
@@ -32,27 +26,28 @@ pub(crate) fn scan(lowering: &mut Lowering<'_>) -> Function {
     builder.set_origin(Some(origin));
     for (index, point) in program.outputs.iter().enumerate() {
         let public = Place::root(Root::Output).field(index as u32);
-        let ty = point_type(program, point);
-        copy(&mut builder, place(&point.place), public, ty);
+        move_point(program, &mut builder, point, place(&point.place), public);
     }
     builder.ret(Vec::new());
     builder.finish()
 }
 
-fn point_type(program: &hir::Program, point: &hir::IoPoint) -> Type {
+fn move_point(
+    program: &hir::Program,
+    builder: &mut FunctionBuilder,
+    point: &hir::IoPoint,
+    from: Place,
+    to: Place,
+) {
     match program.type_of(&point.place) {
-        hir::Type::Elementary(ty) => scalar(ty),
-        hir::Type::Struct(_) | hir::Type::Array(_) => panic!("points are words or bits"),
+        hir::Type::Elementary(ty) => copy(builder, from, to, scalar(ty)),
+        hir::Type::Struct(_) | hir::Type::Array(_) => builder.copy(to, from),
     }
 }
 
 /// What a main routine gives back goes nowhere.
-fn call_main(program: &hir::Program, builder: &mut FunctionBuilder, main: PouId) {
-    let results = &program.pou(main).results;
-    let mut types: Vec<Type> = results.iter().map(|ty| scalar(*ty)).collect();
-    if !types.is_empty() {
-        types.insert(0, Type::I1);
-    }
+pub(crate) fn call_main(program: &hir::Program, builder: &mut FunctionBuilder, main: PouId) {
+    let types = result_types(program.pou(main));
     let func = FuncId::from_u32(main.index() as u32);
     builder.call(func, Vec::new(), Vec::new(), &types);
 }
@@ -61,7 +56,7 @@ fn call_main(program: &hir::Program, builder: &mut FunctionBuilder, main: PouId)
 /// says of prescan. Calls are followed on an explicit stack, because the user decides their depth.
 pub(crate) fn prescan(lowering: &mut Lowering<'_>) -> Function {
     let program = lowering.program;
-    let mut builder = FunctionBuilder::new("prescan", &[], &[]);
+    let mut builder = FunctionBuilder::new(lowering.fresh_function("prescan"), &[], &[]);
     let mut seen = vec![false; program.pous.len()];
     for main in program.tasks.iter().flat_map(|task| &task.calls) {
         let mut stack = Vec::new();

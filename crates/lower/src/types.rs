@@ -1,7 +1,8 @@
 //! Types and places: the IR's are the program's, one to one, field by field.
 
-use iecc_ir::{FieldDef, Index, MemType, Place, Projection, Root, StructId, Type, TypeTable};
-use iecc_sema::hir::{self, Elementary, Step};
+use crate::fresh;
+use iecc_ir::{FieldDef, Index, MemType, Place, Projection, Root, StructId, Type, TypeTable, View};
+use iecc_sema::hir::{self, Body, Elementary, Pou, Step};
 use std::collections::BTreeMap;
 
 /// The IR's types, made as they are needed.
@@ -28,27 +29,41 @@ impl<'p> TypeMap<'p> {
         self.table
     }
 
-    /// The state: one field per tag, in the order of tags.
-    pub(crate) fn state_struct(&mut self) -> StructId {
-        let program = self.program;
-        let fields = program
-            .tags
-            .iter()
-            .map(|tag| FieldDef::new(tag.name.clone(), self.mem_type(tag.ty)))
-            .collect();
+    /// One field of the state per tag, in the order of tags.
+    pub(crate) fn tag_fields(&mut self) -> Vec<FieldDef> {
+        let tags = self.program.tags.iter();
+        tags.map(|tag| self.field(&tag.name, tag.ty, tag.view))
+            .collect()
+    }
+
+    /// The state.
+    pub(crate) fn state_struct(&mut self, fields: Vec<FieldDef>) -> StructId {
         self.table.add_struct("state", fields)
+    }
+
+    /// A structure of our own.
+    pub(crate) fn hidden(&mut self, name: &str, fields: Vec<FieldDef>) -> StructId {
+        let program = self.program;
+        let taken = |name: &str| program.types.structs().any(|(_, def)| def.name == name);
+        self.table.add_struct(fresh(name, taken), fields)
     }
 
     /// The inputs or outputs: one field per point.
     pub(crate) fn io_struct(&mut self, name: &str, points: &[hir::IoPoint]) -> StructId {
+        let program = self.program;
         let fields = points
             .iter()
             .map(|point| {
-                let ty = self.mem_type(self.program.type_of(&point.place));
-                FieldDef::new(point.name.clone(), ty)
+                let ty = program.type_of(&point.place);
+                self.field(&point.name, ty, seen(program, &point.place))
             })
             .collect();
         self.table.add_struct(name, fields)
+    }
+
+    fn field(&mut self, name: &str, ty: hir::Type, seen: hir::View) -> FieldDef {
+        let view = view(&self.program.types, ty, seen);
+        FieldDef::new(name, self.mem_type(ty)).with_view(view)
     }
 
     /// Recursion is bounded by the depth of types.
@@ -72,7 +87,7 @@ impl<'p> TypeMap<'p> {
         let fields = def
             .members
             .iter()
-            .map(|member| FieldDef::new(member.name.clone(), self.mem_type(member.ty)))
+            .map(|member| self.field(&member.name, member.ty, member.view))
             .collect();
         let made = self.table.add_struct(struct_name(&def.name), fields);
         self.structs.insert(id, made);
@@ -88,6 +103,45 @@ impl<'p> TypeMap<'p> {
     }
 }
 
+/// What the numbers at a place stand for: as the tag or the innermost member says.
+fn seen(program: &hir::Program, place: &hir::Place) -> hir::View {
+    let tag = program.tag(place.tag);
+    let (mut at, mut view) = (tag.ty, tag.view);
+    for step in &place.path {
+        match (at, step) {
+            (hir::Type::Struct(id), Step::Field(index)) => {
+                let member = &program.types.struct_def(id).members[*index as usize];
+                (at, view) = (member.ty, member.view);
+            }
+            (hir::Type::Array(id), Step::Index(_)) => at = program.types.array_def(id).element,
+            (hir::Type::Elementary(_), Step::Bit(_)) => return hir::View::Number,
+            (hir::Type::Struct(_) | hir::Type::Array(_) | hir::Type::Elementary(_), _) => {
+                panic!("places are checked when they are made")
+            }
+        }
+    }
+    view
+}
+
+/// How the scalars of a field are seen; structures say so themselves.
+fn view(types: &hir::Types, ty: hir::Type, seen: hir::View) -> View {
+    let leaf = match ty {
+        hir::Type::Array(id) => return view(types, types.array_def(id).element, seen),
+        hir::Type::Struct(_) | hir::Type::Elementary(Elementary::Bool) => return View::Plain,
+        hir::Type::Elementary(leaf) => leaf,
+    };
+    match seen {
+        hir::View::Number if leaf.is_integer() && !leaf.is_signed() => View::Unsigned,
+        hir::View::Number => View::Plain,
+        hir::View::Bits => View::Bits,
+        hir::View::Character => View::Unsigned,
+        hir::View::Time => View::Time,
+        hir::View::Date => View::Date,
+        hir::View::TimeOfDay => View::TimeOfDay,
+        hir::View::DateTime => View::DateTime,
+    }
+}
+
 /// A structure's name that is neither a region nor a value type in the text form.
 fn struct_name(name: &str) -> String {
     let reserved = ["state", "input", "output"].contains(&name) || Type::parse(name).is_some();
@@ -95,6 +149,30 @@ fn struct_name(name: &str) -> String {
         format!("{name}'")
     } else {
         name.to_owned()
+    }
+}
+
+/// The result types of a unit's function. Those of ladder come behind whether there are any.
+pub(crate) fn result_types(pou: &Pou) -> Vec<Type> {
+    match &pou.body {
+        Body::Ladder(_) if pou.results.is_empty() => Vec::new(),
+        Body::Ladder(_) => {
+            let values = pou.results.iter().map(|ty| scalar(*ty));
+            std::iter::once(Type::I1).chain(values).collect()
+        }
+        Body::Text(code) => {
+            let results = code.results.iter();
+            let types = results.map(|local| code.locals[local.index()].ty);
+            types.map(|ty| scalar(elementary(ty))).collect()
+        }
+    }
+}
+
+/// The type of what has one value.
+pub(crate) fn elementary(ty: hir::Type) -> Elementary {
+    match ty {
+        hir::Type::Elementary(ty) => ty,
+        hir::Type::Struct(_) | hir::Type::Array(_) => panic!("values are elementary"),
     }
 }
 

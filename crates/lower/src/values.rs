@@ -175,7 +175,7 @@ fn float_modulo(builder: &mut FunctionBuilder, left: Value, right: Value) -> Val
 
 /// The float without its fraction. The conversion rounds to the nearest, so one is taken back
 /// where that went away from 0; from 2^52 on (and for NaN) floats have no fraction.
-fn truncate(builder: &mut FunctionBuilder, value: Value) -> Value {
+pub(crate) fn truncate(builder: &mut FunctionBuilder, value: Value) -> Value {
     let ty = builder.value_type(value);
     let float = |builder: &mut FunctionBuilder, number: f64| {
         let bits = if ty == Type::F32 {

@@ -162,7 +162,10 @@ fn empty_module(types: &RandomTypes, rng: &mut Rng) -> Module {
     let mut origins = cranelift_entity::PrimaryMap::<Origin, OriginData>::new();
     for rung in 0..3 {
         let label = format!("Main \"rung\" {rung}");
-        origins.push(OriginData { label, span: None });
+        origins.push(OriginData {
+            label: label.into(),
+            span: None,
+        });
     }
     Module {
         name: "random".to_owned(),

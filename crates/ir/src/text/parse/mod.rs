@@ -434,7 +434,10 @@ impl Parser {
             }
             span = Some(Span::new(FileId::from_index(file as usize), start, end));
         }
-        header.origins.push(OriginData { label, span });
+        header.origins.push(OriginData {
+            label: label.into(),
+            span,
+        });
         Ok(())
     }
 
