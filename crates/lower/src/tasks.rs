@@ -240,7 +240,7 @@ fn release(
             builder.store(at(field, SINCE), since);
             let due = builder.compare(CompareOp::Uge, since, interval);
             when(builder, due, |builder| {
-                due_task(builder, task, field, since, interval)
+                due_task(builder, task, field, since, interval);
             });
         }
     }

@@ -90,9 +90,12 @@ impl<'p> Unit<'_, 'p> {
     /// The number of an expression that is a constant of an integer type.
     pub(super) fn integer(&self, id: ExprId) -> Option<i128> {
         let expr = self.code.expr(id);
-        match expr.kind {
-            ExprKind::Const(bits) if !expr.ty.is_float() => Some(number(expr.ty, bits)),
-            _ => None,
+        if let ExprKind::Const(bits) = expr.kind
+            && !expr.ty.is_float()
+        {
+            Some(number(expr.ty, bits))
+        } else {
+            None
         }
     }
 

@@ -78,7 +78,7 @@ fn blocks_work_on_their_instance() {
     let c = crate::hand::tag(&mut hir, "c", counters);
     let i = value(&mut hir, "i", E::Int, 1);
     let mut text = Text::new();
-    let mut steps = |text: &mut Text, rest: &[PathStep]| {
+    let steps = |text: &mut Text, rest: &[PathStep]| {
         let at = text.get(E::Int, i);
         let by = PathStep::IndexBy {
             value: at,

@@ -3,6 +3,7 @@
 use iecc_interp::Interpreter;
 use iecc_ir::{FaultCode, Layout, MemType, Module, Place, Root as IrRoot, Scalar, Type, verify};
 use iecc_lower::{OnFault, Options, lower};
+use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_sema::hir::code::{
     BinaryOp, Block, Call, CallId, Expr, ExprId, ExprKind, Init, InitId, Local, LocalId, Path,
     PathId, PathStep, RefParam, Root, Stmt, StmtId, StmtKind,
@@ -280,11 +281,12 @@ impl Text {
     }
 }
 
-/// A lowered program that runs.
+/// A lowered program that runs as it is and, after the passes for software, a second time.
 pub(crate) struct Run {
     module: Module,
     layout: Layout,
     engine: Interpreter,
+    second: Interpreter,
     pub(crate) outputs: Vec<u8>,
 }
 
@@ -295,6 +297,12 @@ pub(crate) fn continuing() -> Options {
     }
 }
 
+fn after_passes(mut module: Module) -> Interpreter {
+    run_pipeline(&mut module, SOFTWARE, &Settings::default(), &mut |_, _| ())
+        .expect("the passes exist");
+    Interpreter::new(verify(&module).expect("passes keep the rules"))
+}
+
 impl Run {
     pub(crate) fn new(program: &Program, options: &Options) -> Self {
         let module = lower(program, options);
@@ -302,9 +310,11 @@ impl Run {
             let text = iecc_ir::print_module(&module);
             panic!("{}\n{text}", errors[0])
         });
+        let engine = Interpreter::new(verified);
         Self {
             layout: Layout::new(&module.types),
-            engine: Interpreter::new(verified),
+            engine,
+            second: after_passes(module.clone()),
             outputs: region_bytes(&module, iecc_ir::Region::Output),
             module,
         }
@@ -321,8 +331,14 @@ impl Run {
 
     pub(crate) fn scan(&mut self, now_ns: u64) -> Result<(), FaultCode> {
         let inputs = region_bytes(&self.module, iecc_ir::Region::Input);
+        let mut outputs = self.outputs.clone();
+        let second = self.second.step(now_ns, &inputs, &mut outputs);
         let ended = self.engine.step(now_ns, &inputs, &mut self.outputs);
-        ended.map_err(|fault| fault.code)
+        let [ended, second] = [ended, second].map(|ended| ended.map_err(|fault| fault.code));
+        assert_eq!(ended, second, "after the passes");
+        assert_eq!(self.outputs, outputs, "after the passes");
+        assert_eq!(self.engine.state(), self.second.state(), "after the passes");
+        ended
     }
 
     /// Where a fault of the next scan comes from.
@@ -388,6 +404,7 @@ impl Run {
         let mut state = self.engine.state().to_vec();
         Scalar::new(ty, bits).write(&mut state, offset as usize);
         self.engine.set_state(&state);
+        self.second.set_state(&state);
     }
 
     pub(crate) fn module(&self) -> &Module {

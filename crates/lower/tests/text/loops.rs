@@ -113,7 +113,7 @@ const ROWS: &[Row] = &[
     (
         E::Lint,
         [i64::MAX as i128, i64::MIN as i128, i64::MIN as i128],
-        (2, -2, i64::MAX),
+        (2, i64::MAX - 1, i64::MAX),
     ),
     (
         E::Ulint,

@@ -319,7 +319,7 @@ fn the_value_comes_before_the_indices_of_its_target_and_these_once() {
     let a = tag(&mut hir, "a", ints);
     let i = value(&mut hir, "i", E::Int, 0);
     let mut text = Text::new();
-    let mut counted = |text: &mut Text| {
+    let counted = |text: &mut Text| {
         let bump = text.bump(E::Int, i, 1);
         let read = text.get(E::Int, i);
         text.expr(E::Int, ExprKind::After(vec![bump], read))

@@ -119,7 +119,7 @@ fn case(ty: E, ranges: &[&[(i64, i64)]], selector: i64) -> i64 {
     let s = value(&mut hir, "s", ty, selector as u64);
     let r = value(&mut hir, "r", E::Int, 77);
     let mut text = Text::new();
-    let mut arm = |text: &mut Text, number| {
+    let arm = |text: &mut Text, number| {
         let number = text.num(E::Int, number);
         vec![text.set_tag(r, number)]
     };
