@@ -180,7 +180,7 @@ fn ranges_of_unsigned_selectors_are_unsigned() {
 fn a_case_with_more_numbers_than_a_switch_takes() {
     // 20 ranges of 64 numbers with a gap of one between them: 1280 in all.
     let ranges: Vec<[(i64, i64); 1]> = (0..20).map(|n| [(65 * n, 65 * n + 63)]).collect();
-    let ranges: Vec<&[(i64, i64)]> = ranges.iter().map(|range| range.as_slice()).collect();
+    let ranges: Vec<&[(i64, i64)]> = ranges.iter().map(<[_; 1]>::as_slice).collect();
     for n in [0, 7, 15, 16, 19] {
         assert_eq!(case(E::Dint, &ranges, 65 * n), n + 1);
         assert_eq!(case(E::Dint, &ranges, 65 * n + 63), n + 1);
