@@ -462,7 +462,7 @@ impl Bench {
         let bytes = match root {
             Root::Input => &self.inputs,
             Root::Output => &self.outputs,
-            Root::State | Root::Ref(_) | Root::Local(_) => self.engine.state(),
+            Root::State | Root::Ref(_) | Root::Local(_) | Root::Deref { .. } => self.engine.state(),
         };
         let word = read(bytes, offset, ty);
         match bit {
@@ -477,7 +477,7 @@ impl Bench {
         let bytes = match root {
             Root::Input => &mut self.inputs,
             Root::Output => panic!("{path} is an output"),
-            Root::State | Root::Ref(_) | Root::Local(_) => &mut state,
+            Root::State | Root::Ref(_) | Root::Local(_) | Root::Deref { .. } => &mut state,
         };
         let bits = match bit {
             Some(bit) => {

@@ -67,7 +67,7 @@ fn random_modules_hold_everything_there_is() {
         iecc_ir::CompareOp::ALL.iter().map(|op| op.name()).collect(),
         iecc_ir::ConvertOp::ALL.iter().map(|op| op.name()).collect(),
         FaultCode::ALL.iter().map(|code| code.name()).collect(),
-        "const select load store copy clear now elapsed step call jump brif switch return"
+        "const select load store copy clear address now elapsed step call jump brif switch return"
             .split(' ')
             .collect(),
     ];
@@ -111,6 +111,7 @@ fn inst_name(inst: &InstData) -> &'static str {
         InstData::Store { .. } => "store",
         InstData::Copy { .. } => "copy",
         InstData::Clear { .. } => "clear",
+        InstData::Address { .. } => "address",
         InstData::Now => "now",
         InstData::Elapsed { .. } => "elapsed",
         InstData::Step { .. } => "step",

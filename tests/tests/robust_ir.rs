@@ -17,6 +17,7 @@ const SMALL: Options = Options {
     floats: true,
     division: true,
     dynamic_places: true,
+    addresses: true,
     now: true,
     step: true,
     elapsed: true,

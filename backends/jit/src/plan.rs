@@ -68,19 +68,27 @@ pub(crate) struct Plan {
     facts: SecondaryMap<FuncId, Facts>,
     /// Memory the engine provides for locals.
     pub(crate) local_bytes: u64,
-    /// Bytes that lie behind the start of the state: a reference that is absent reads there.
+    /// Bytes of the state.
+    pub(crate) state_len: u64,
+    /// Bytes that lie behind its start: what is absent is read there.
     pub(crate) state_bytes: u64,
+    /// Whether the state is also accessed by addresses, so that an `i1` may be any byte.
+    pub(crate) has_addresses: bool,
 }
 
 impl Plan {
     /// Looks at every function the scan reaches.
     pub(crate) fn new(module: &Module, layout: &Layout) -> Self {
         let order = callees_first(module);
+        let state_len = layout.size(&module.types, MemType::Struct(module.state));
         let mut plan = Self {
             order: order.clone(),
             facts: SecondaryMap::new(),
             local_bytes: 0,
-            state_bytes: layout.size(&module.types, MemType::Struct(module.state)),
+            state_len,
+            // One more, so that its end is no place of other memory.
+            state_bytes: state_len + 1,
+            has_addresses: module.has_addresses(),
         };
         for &id in &order {
             let facts = plan.examine(module, layout, &module.funcs[id]);
@@ -204,13 +212,29 @@ impl Plan {
                 self.state_bytes = self.state_bytes.max(bytes);
             }
         }
+        if self.has_addresses {
+            self.reserve_for_addresses(module, layout, id);
+        }
+    }
+
+    fn reserve_for_addresses(&mut self, module: &Module, layout: &Layout, id: FuncId) {
+        let func = &module.funcs[id];
+        let blocks = func.layout.iter().map(|&block| func.block(block));
+        for &inst in blocks.flat_map(|block| &block.insts) {
+            for place in func.inst(inst).places() {
+                if let Root::Deref { ty, .. } = place.root {
+                    let bytes = layout.size(&module.types, ty);
+                    self.state_bytes = self.state_bytes.max(bytes);
+                }
+            }
+        }
     }
 
     /// Whether the place may lie outside an array when `func` runs.
     pub(crate) fn can_be_absent(&self, func: FuncId, place: &Place) -> bool {
         let inherited = match place.root {
             Root::Ref(param) => self.facts[func].absent_refs.contains(param),
-            Root::State | Root::Input | Root::Output | Root::Local(_) => false,
+            Root::State | Root::Input | Root::Output | Root::Local(_) | Root::Deref { .. } => false,
         };
         inherited || !place.is_static()
     }
@@ -240,6 +264,7 @@ pub(crate) fn calls(func: &Function, block: Block) -> impl Iterator<Item = FuncI
         | InstData::Store { .. }
         | InstData::Copy { .. }
         | InstData::Clear { .. }
+        | InstData::Address { .. }
         | InstData::Now
         | InstData::Elapsed { .. }
         | InstData::Step { .. } => None,

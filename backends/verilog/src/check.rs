@@ -127,6 +127,12 @@ impl Check<'_> {
                            scale the number to a DINT";
             self.refuse(Refusal::Float, origin, message);
         }
+        let is_deref = |place: &&Place| matches!(place.root, Root::Deref { .. });
+        if matches!(data, InstData::Address { .. }) || data.places().iter().any(is_deref) {
+            let message = "a reference is taken or followed here, and registers have no addresses; name the \
+                           variable itself";
+            return self.refuse(Refusal::Reference, origin, message);
+        }
         if data.places().iter().any(|place| !place.is_static()) {
             let message = "the index is computed here, and every register has its own place in hardware; \
                            use a constant index";
@@ -161,6 +167,7 @@ impl Check<'_> {
             | InstData::Convert { .. }
             | InstData::Select { .. }
             | InstData::Load { .. }
+            | InstData::Address { .. }
             | InstData::Store { .. } => {}
         }
     }

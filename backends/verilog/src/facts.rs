@@ -129,6 +129,7 @@ impl Facts {
             | InstData::Store { .. }
             | InstData::Copy { .. }
             | InstData::Clear { .. }
+            | InstData::Address { .. }
             | InstData::Now
             | InstData::Elapsed { .. }
             | InstData::Call { .. } => Range::of_type(ty),
@@ -170,6 +171,7 @@ impl Facts {
                 | InstData::Select { .. }
                 | InstData::Copy { .. }
                 | InstData::Clear { .. }
+                | InstData::Address { .. }
                 | InstData::Now
                 | InstData::Elapsed { .. }
                 | InstData::Step { .. }
@@ -217,6 +219,7 @@ impl Facts {
             | InstData::Store { .. }
             | InstData::Copy { .. }
             | InstData::Clear { .. }
+            | InstData::Address { .. }
             | InstData::Now
             | InstData::Elapsed { .. }
             | InstData::Step { .. }
@@ -257,7 +260,7 @@ impl Leaf {
         match place.root {
             Root::State => self.range.bits(),
             Root::Output => self.ty.bits(),
-            Root::Input | Root::Ref(_) | Root::Local(_) => 0,
+            Root::Input | Root::Ref(_) | Root::Local(_) | Root::Deref { .. } => 0,
         }
     }
 }
@@ -307,7 +310,9 @@ fn new_leaf(
                 .copied()
                 .unwrap_or_else(|| Range::of_type(ty)),
         ),
-        Root::Input | Root::Output | Root::Ref(_) | Root::Local(_) => (0, Range::of_type(ty)),
+        Root::Input | Root::Output | Root::Ref(_) | Root::Local(_) | Root::Deref { .. } => {
+            (0, Range::of_type(ty))
+        }
     };
     assert!(
         place.root != Root::State || range.union(Range::of_bits(ty, initial)) == range,

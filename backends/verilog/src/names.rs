@@ -60,7 +60,7 @@ pub fn place_text(module: &Module, place: &Place) -> String {
         Root::Input => module.input,
         Root::Output => module.output,
         Root::Ref(_) => panic!("the scan function has no references"),
-        Root::Local(_) => panic!("refused by the check"),
+        Root::Local(_) | Root::Deref { .. } => panic!("refused by the check"),
     };
     let mut at = MemType::Struct(region);
     let mut text = String::new();

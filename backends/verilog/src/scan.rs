@@ -140,6 +140,7 @@ impl Lowering<'_> {
             InstData::Store { .. }
             | InstData::Copy { .. }
             | InstData::Clear { .. }
+            | InstData::Address { .. }
             | InstData::Now
             | InstData::Elapsed { .. }
             | InstData::Call { .. } => panic!("refused by the check"),
@@ -336,7 +337,7 @@ impl Lowering<'_> {
             }
             Root::State => Source::Register(index(&self.scan.registers)),
             Root::Input => Source::Input(index(&self.scan.inputs)),
-            Root::Output | Root::Ref(_) | Root::Local(_) => {
+            Root::Output | Root::Ref(_) | Root::Local(_) | Root::Deref { .. } => {
                 panic!("verified and checked: never loaded")
             }
         };
@@ -373,7 +374,12 @@ impl Lowering<'_> {
             // Outputs start each scan as they are in the byte region: this is not readable, so a
             // bit store to an output without a whole store before it keeps 0.
             Root::Output if !self.scan.memory.contains_key(leaf) => self.net().constant(bits, 0),
-            Root::Output | Root::State | Root::Input | Root::Ref(_) | Root::Local(_) => {
+            Root::Output
+            | Root::State
+            | Root::Input
+            | Root::Ref(_)
+            | Root::Local(_)
+            | Root::Deref { .. } => {
                 let word = self.leaf(leaf);
                 self.fit(word, bits)
             }

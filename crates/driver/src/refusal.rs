@@ -11,6 +11,7 @@ fn code(refusal: Refusal) -> Code {
         Refusal::Division => Code::E7002,
         Refusal::Float => Code::E7003,
         Refusal::DynamicPlace => Code::E7004,
+        Refusal::Reference => Code::E7010,
         Refusal::Fault => Code::E7005,
         Refusal::AbsoluteTime => Code::E7006,
         Refusal::Size => Code::E7007,

@@ -92,6 +92,7 @@ fn callees(func: &Function) -> impl Iterator<Item = FuncId> {
         | InstData::Store { .. }
         | InstData::Copy { .. }
         | InstData::Clear { .. }
+        | InstData::Address { .. }
         | InstData::Now
         | InstData::Elapsed { .. }
         | InstData::Step { .. } => None,

@@ -17,7 +17,7 @@ mod memory;
 mod route;
 
 use cost::{Costs, worst_case_cost};
-use iecc_ir::{FuncId, Image, Module, Region, Terminator, Verified};
+use iecc_ir::{FuncId, Image, Layout, Module, Region, Terminator, Verified};
 use iecc_target::{Engine, Fault, region_bytes};
 use machine::{Machine, Scan};
 use memory::Memory;
@@ -150,7 +150,12 @@ pub fn run_prescan(module: Verified<'_>) -> Result<Image, Fault> {
         let mut outputs = region_bytes(&module, Region::Output);
         interpreter.run(prescan, 0, &inputs, &mut outputs)?;
     }
-    Ok(Image::from_bytes(interpreter.state))
+    let image = Image::from_bytes(interpreter.state);
+    if module.has_addresses() {
+        let layout = Layout::new(&module.types);
+        return Ok(image.tidied(&layout, &module.types, module.state));
+    }
+    Ok(image)
 }
 
 fn has_faults(module: &Module) -> bool {

@@ -159,6 +159,15 @@ impl<'p, 'm> Machine<'p, 'm> {
                 let (to, bytes) = (self.address(route), route.bytes);
                 return self.memory.copy(to, None, bytes);
             }
+            InstData::Address { .. } => {
+                let [route] = self.scan.routes.of(self.frame.id, inst) else {
+                    panic!("an address has one place")
+                };
+                match self.address(route) {
+                    Some(at) if at.space == Space::State => at.offset + 1,
+                    Some(_) | None => 0,
+                }
+            }
             InstData::Now => self.scan.now_ns,
             InstData::Elapsed { unit_ns, ty, .. } => self.elapsed(inst, *unit_ns, *ty),
             InstData::Step { unit_ns, ty } => {
@@ -290,6 +299,12 @@ impl<'p, 'm> Machine<'p, 'm> {
             Root::Output => start_of(Space::Output, 0),
             Root::Local(_) => start_of(Space::Locals, self.frame.local_base),
             Root::Ref(param) => self.frame.refs[param.as_u32() as usize]?,
+            Root::Deref { value, .. } => {
+                let start = self.value(value).checked_sub(1)?;
+                let end = start.checked_add(route.root_bytes)?;
+                let inside = end <= self.memory.state.len() as u64;
+                inside.then_some(start_of(Space::State, start as usize))?
+            }
         };
         address.offset += route.offset;
         for stride in &route.strides {

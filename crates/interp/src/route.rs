@@ -18,6 +18,8 @@ pub(crate) struct Stride {
 #[derive(Debug, Clone)]
 pub(crate) struct Route {
     pub(crate) root: Root,
+    /// How many bytes lie there.
+    pub(crate) root_bytes: u64,
     /// Of all fields and constant indices together.
     pub(crate) offset: u64,
     pub(crate) strides: Vec<Stride>,
@@ -41,8 +43,9 @@ impl Route {
             root: place.root,
             offset: match place.root {
                 Root::Local(local) => locals[local],
-                Root::State | Root::Input | Root::Output | Root::Ref(_) => 0,
+                Root::State | Root::Input | Root::Output | Root::Ref(_) | Root::Deref { .. } => 0,
             },
+            root_bytes: layout.size(&module.types, start.expect("verified roots exist")),
             strides: Vec::new(),
             ty: start.expect("verified roots exist"),
             bytes: 0,

@@ -191,6 +191,11 @@ impl FunctionBuilder {
         self.push(InstData::Clear { place }, &[]);
     }
 
+    /// The address of a place of the state.
+    pub fn address(&mut self, place: Place) -> Value {
+        self.push_one(InstData::Address { place }, Type::I64)
+    }
+
     /// The time of the scan, `i64` nanoseconds.
     pub fn now(&mut self) -> Value {
         self.push_one(InstData::Now, Type::I64)

@@ -1,6 +1,6 @@
 //! The initial contents of the state region, as the bytes of its layout.
 
-use crate::{Layout, MemType, Place, StructId, Type, TypeTable};
+use crate::{Layout, MemType, Place, Root, StructId, Type, TypeTable};
 
 /// One value with its type, as bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -58,6 +58,18 @@ impl Image {
     /// An image from bytes of the region's size.
     pub fn from_bytes(bytes: Vec<u8>) -> Self {
         Self { bytes }
+    }
+
+    /// The same scalars, with each `i1` 0 or 1 and nothing between them: a program that stores at
+    /// addresses may leave other bytes there.
+    #[must_use]
+    pub fn tidied(&self, layout: &Layout, types: &TypeTable, region: StructId) -> Self {
+        let mut tidy = Self::zero(layout, types, region);
+        let (start, ty) = (Place::root(Root::State), MemType::Struct(region));
+        layout.for_each_leaf(types, &start, ty, &mut |_, offset, ty| {
+            tidy.set(offset, self.get(offset, ty));
+        });
+        tidy
     }
 
     /// The bytes.

@@ -78,6 +78,14 @@ pub enum InstData {
         /// What becomes 0.
         place: Place,
     },
+    /// `address place`: where a place of the state lies, an `i64`: one more than its byte offset in the
+    /// region. It is 0 where an index is out of bounds, and for a reference that stands for nothing
+    /// or for a local. Addresses mean the same in every scan, so the state and its image may hold
+    /// them.
+    Address {
+        /// Of the state, a reference, or at an address.
+        place: Place,
+    },
     /// The time of this scan, `i64` nanoseconds.
     Now,
     /// `elapsed place, unit`: how many boundaries of `unit_ns` lie between the time kept in the
@@ -121,9 +129,10 @@ impl InstData {
             Self::Unary { arg, .. } | Self::Convert { arg, .. } => vec![*arg],
             Self::Binary { args, .. } | Self::Compare { args, .. } => args.to_vec(),
             Self::Select { cond, args } => vec![*cond, args[0], args[1]],
-            Self::Load { place } | Self::Elapsed { place, .. } | Self::Clear { place } => {
-                place.values().collect()
-            }
+            Self::Load { place }
+            | Self::Elapsed { place, .. }
+            | Self::Clear { place }
+            | Self::Address { place } => place.values().collect(),
             Self::Copy { to, from } => to.values().chain(from.values()).collect(),
             Self::Store { place, value } => place.values().chain([*value]).collect(),
             Self::Call { refs, args, .. } => refs
@@ -144,7 +153,10 @@ impl InstData {
                 *cond = f(*cond);
                 *args = args.map(f);
             }
-            Self::Load { place } | Self::Elapsed { place, .. } | Self::Clear { place } => {
+            Self::Load { place }
+            | Self::Elapsed { place, .. }
+            | Self::Clear { place }
+            | Self::Address { place } => {
                 place.values_mut().for_each(|v| *v = f(*v));
             }
             Self::Copy { to, from } => {
@@ -170,6 +182,7 @@ impl InstData {
             Self::Load { place }
             | Self::Store { place, .. }
             | Self::Clear { place }
+            | Self::Address { place }
             | Self::Elapsed { place, .. } => vec![place],
             Self::Copy { to, from } => vec![to, from],
             Self::Call { refs, .. } => refs.iter().collect(),
@@ -190,6 +203,7 @@ impl InstData {
             Self::Load { place }
             | Self::Store { place, .. }
             | Self::Clear { place }
+            | Self::Address { place }
             | Self::Elapsed { place, .. } => vec![place],
             Self::Copy { to, from } => vec![to, from],
             Self::Call { refs, .. } => refs.iter_mut().collect(),
@@ -210,7 +224,7 @@ impl InstData {
             Self::Load { place } | Self::Store { place, .. } | Self::Elapsed { place, .. } => {
                 Some(place)
             }
-            Self::Copy { .. } | Self::Clear { .. } => None,
+            Self::Copy { .. } | Self::Clear { .. } | Self::Address { .. } => None,
             Self::Const { .. }
             | Self::Unary { .. }
             | Self::Binary { .. }
@@ -224,7 +238,8 @@ impl InstData {
     }
 
     /// Whether the result depends on the operands alone, so that equal ones may be shared and
-    /// unused ones dropped. Time is constant within a scan, so `now` and `step` are pure.
+    /// unused ones dropped. Time is constant within a scan, so `now` and `step` are pure; so is where
+    /// a place lies.
     pub fn is_pure(&self) -> bool {
         match self {
             Self::Const { .. }
@@ -233,6 +248,7 @@ impl InstData {
             | Self::Compare { .. }
             | Self::Convert { .. }
             | Self::Select { .. }
+            | Self::Address { .. }
             | Self::Now
             | Self::Step { .. } => true,
             Self::Load { .. }

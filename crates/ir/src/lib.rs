@@ -9,8 +9,9 @@
 //! * **Control** is basic blocks with parameters and one [`Terminator`] each. Any graph is legal.
 //! * **Memory** is reached through [`Place`]s only: a root plus `.field`, `[index]` and bit
 //!   projections. A root is a region, a reference parameter, or a local: memory of one activation of
-//!   a function, 0 when it begins. There are no pointers, so two places overlap only if one is a prefix of the
-//!   other, up to indices.
+//!   a function, 0 when it begins. Two places overlap only if one is a prefix of the other, up to
+//!   indices. For references that are values there are addresses: byte offsets in the state, which
+//!   are checked when they are followed, and behind which anything in the state may lie.
 //! * **Every operation is total**; `ops.rs` is the one table that says what each computes, and
 //!   [`eval`] computes it, for the interpreter and for passes that fold. A language error is an
 //!   explicit branch to `fault`, so no back end decides what an error does. A fault leaves state

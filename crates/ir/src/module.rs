@@ -1,6 +1,6 @@
 //! Modules: regions, image, functions, names and origins.
 
-use crate::{Function, Image, MemType, Place, Root, StructId, TypeTable};
+use crate::{Function, Image, InstData, MemType, Place, Root, StructId, TypeTable};
 use cranelift_entity::{PrimaryMap, entity_impl};
 use iecc_source::Span;
 use std::sync::Arc;
@@ -80,7 +80,21 @@ impl Module {
             Root::Output => Some(MemType::Struct(self.output)),
             Root::Ref(param) => func.refs.get(param).map(|data| data.ty),
             Root::Local(local) => func.locals.get(local).map(|data| data.ty),
+            Root::Deref { ty, .. } => Some(ty),
         }
+    }
+
+    /// Whether anything takes or follows addresses of the state. Then offsets in it mean something,
+    /// and the types of its fields do not say how it is accessed.
+    pub fn has_addresses(&self) -> bool {
+        let deref = |place: &&Place| matches!(place.root, Root::Deref { .. });
+        self.funcs.values().any(|func| {
+            let blocks = func.layout.iter().map(|&block| func.block(block));
+            blocks.flat_map(|block| &block.insts).any(|&inst| {
+                let data = func.inst(inst);
+                matches!(data, InstData::Address { .. }) || data.places().iter().any(deref)
+            })
+        })
     }
 
     /// The function with this name.

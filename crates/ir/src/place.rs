@@ -16,6 +16,25 @@ pub enum Root {
     /// Memory of this activation of the function. It is no part of the state and of no other local,
     /// nor do the function's own references refer to it.
     Local(Local),
+    /// What lies at an address of the state, see [`InstData::Address`](crate::InstData::Address). If
+    /// not all of it lies inside the state, loads give 0 and stores do nothing. It may overlap
+    /// anything in the state, in any way.
+    Deref {
+        /// The address, an `i64`.
+        value: Value,
+        /// What is taken to lie there.
+        ty: MemType,
+    },
+}
+
+impl Root {
+    /// Whether places of this root may be the same memory as places of another.
+    pub fn may_alias(self) -> bool {
+        match self {
+            Self::State | Self::Ref(_) | Self::Deref { .. } => true,
+            Self::Input | Self::Output | Self::Local(_) => false,
+        }
+    }
 }
 
 /// An array index or bit number.
@@ -104,13 +123,22 @@ impl Place {
         self
     }
 
-    /// Whether every index on the way is a constant.
+    /// Whether the address is no value and every index on the way is a constant.
     pub fn is_static(&self) -> bool {
         self.values().next().is_none()
     }
 
-    /// The index values on the way.
+    /// The address and the index values on the way.
     pub fn values(&self) -> impl Iterator<Item = Value> + '_ {
+        let address = match self.root {
+            Root::Deref { value, .. } => Some(value),
+            Root::State | Root::Input | Root::Output | Root::Ref(_) | Root::Local(_) => None,
+        };
+        address.into_iter().chain(self.index_values())
+    }
+
+    /// The index values on the way.
+    pub fn index_values(&self) -> impl Iterator<Item = Value> + '_ {
         self.path.iter().filter_map(|step| match step {
             Projection::Index(Index::Value(value)) | Projection::Bit(Index::Value(value)) => {
                 Some(*value)
@@ -121,26 +149,28 @@ impl Place {
         })
     }
 
-    /// The index values on the way, for replacement.
+    /// The address and the index values on the way, for replacement.
     pub fn values_mut(&mut self) -> impl Iterator<Item = &mut Value> + '_ {
-        self.path.iter_mut().filter_map(|step| match step {
+        let address = match &mut self.root {
+            Root::Deref { value, .. } => Some(value),
+            Root::State | Root::Input | Root::Output | Root::Ref(_) | Root::Local(_) => None,
+        };
+        let indices = self.path.iter_mut().filter_map(|step| match step {
             Projection::Index(Index::Value(value)) | Projection::Bit(Index::Value(value)) => {
                 Some(value)
             }
             Projection::Index(Index::Const(_))
             | Projection::Bit(Index::Const(_))
             | Projection::Field(_) => None,
-        })
+        });
+        address.into_iter().chain(indices)
     }
 
     /// Whether a store to one may change a load of the other. Exact for static places with the same
-    /// kind of root; two reference parameters, or a reference and the state, may always overlap.
+    /// root; the state, reference parameters and what lies at addresses may always overlap.
     pub fn may_overlap(&self, other: &Place) -> bool {
         if self.root != other.root {
-            return matches!(
-                (self.root, other.root),
-                (Root::Ref(_) | Root::State, Root::Ref(_) | Root::State)
-            );
+            return self.root.may_alias() && other.root.may_alias();
         }
         self.path
             .iter()

@@ -23,13 +23,14 @@
 //!
 //! Memory and time
 //! 12. A place follows its types; constant indices and bits are inside the bounds; index values are
-//!     `i32`.
+//!     `i32`, addresses `i64`. `address` takes no bit and nothing of an input, an output or a local, and
+//!     gives an `i64`.
 //! 13. Loads and stores move one scalar or bit of the result's or operand's type; `copy` moves and
 //!     `clear` makes 0 whole scalars, structs and arrays, not bits, between places of one type.
 //!     Inputs are not written to, outputs not read.
-//! 14. A call passes one place per reference, of the same type, of the state, a reference or a local,
-//!     and not ending in a bit; one value per parameter; its results are those of the callee.
-//! 15. `elapsed` keeps its time in an `i64` of the state, a reference or a local; units are at least 1 ns;
+//! 14. A call passes one place per reference, of the same type, no input or output, and
+//!     not ending in a bit; one value per parameter; its results are those of the callee.
+//! 15. `elapsed` keeps its time in an `i64` that is no input or output; units are at least 1 ns;
 //!     `elapsed` and `step` give `i32` or `i64`.
 
 use crate::analysis::{Cfg, Dominators};
@@ -528,6 +529,17 @@ impl<'m, 'e> FunctionCheck<'m, 'e> {
                 self.same(10, "select", &results, &types[..1]);
             }
             InstData::Copy { to, from } => self.copy(to, from, &results),
+            InstData::Address { place } => {
+                let found = self.place_type(place);
+                let is_state = place.root.may_alias();
+                if found == Some(PlaceType::Bit) || !is_state {
+                    self.error(
+                        12,
+                        "the address of something else than state is taken".to_owned(),
+                    );
+                }
+                self.same(12, "address", &results, &[Type::I64]);
+            }
             InstData::Clear { place } => {
                 self.memory_place(place);
                 self.written(place);
@@ -553,13 +565,12 @@ impl<'m, 'e> FunctionCheck<'m, 'e> {
                     kept.as_slice(),
                     &[Type::I64],
                 );
-                if !matches!(place.root, Root::State | Root::Ref(_) | Root::Local(_))
+                if matches!(place.root, Root::Input | Root::Output)
                     || matches!(place.path.last(), Some(Projection::Bit(_)))
                 {
                     self.error(
                         15,
-                        "elapsed keeps its time neither in the state nor in a reference or local"
-                            .to_owned(),
+                        "elapsed keeps its time in an input, an output or a bit".to_owned(),
                     );
                 }
                 self.unit(*unit_ns, *ty, &results);
@@ -586,7 +597,10 @@ impl<'m, 'e> FunctionCheck<'m, 'e> {
     }
 
     fn place_type(&mut self, place: &Place) -> Option<PlaceType> {
-        for value in place.values() {
+        if let Root::Deref { value, .. } = place.root {
+            self.same(12, "an address", &[self.ty(value)], &[Type::I64]);
+        }
+        for value in place.index_values() {
             self.same(12, "an index", &[self.ty(value)], &[Type::I32]);
         }
         let start = self.module.root_type(self.func, place.root);

@@ -84,6 +84,7 @@ impl Library {
                     | InstData::Store { .. }
                     | InstData::Copy { .. }
                     | InstData::Clear { .. }
+                    | InstData::Address { .. }
                     | InstData::Now
                     | InstData::Step { .. } => {}
                 }

@@ -12,7 +12,7 @@ use cranelift_entity::{EntityRef, EntitySet, SecondaryMap, packed_option::Packed
 use iecc_ir::analysis::{Cfg, Dominators, Loops};
 use iecc_ir::{
     Block, FuncId, Function, Inst, InstData, Layout, Local, LocalData, MAX_LOCAL_BYTES, Module,
-    Origin, Place, Root, Target, Terminator, Value,
+    Origin, Place, Root, Target, Terminator, Type, Value,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -183,7 +183,12 @@ impl<'f> Copied<'f> {
                 root: Root::Local(self.locals[local.index()]),
                 path: mapped.path,
             },
-            Root::Ref(_) | Root::Local(_) | Root::State | Root::Input | Root::Output => mapped,
+            Root::Ref(_)
+            | Root::Local(_)
+            | Root::Deref { .. }
+            | Root::State
+            | Root::Input
+            | Root::Output => mapped,
         }
     }
 
@@ -202,6 +207,17 @@ impl<'f> Copied<'f> {
             },
             InstData::Clear { place } => InstData::Clear {
                 place: self.place(place),
+            },
+            InstData::Address { place } => match self.place(place) {
+                // A reference to a local has the address 0.
+                Place {
+                    root: Root::Local(_),
+                    ..
+                } => InstData::Const {
+                    ty: Type::I64,
+                    bits: 0,
+                },
+                place => InstData::Address { place },
             },
             InstData::Elapsed { place, unit_ns, ty } => InstData::Elapsed {
                 place: self.place(place),

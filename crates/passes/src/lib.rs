@@ -218,6 +218,29 @@ pub const CHANGE_STATE: &[&str] = &[
     "early_compare",
 ];
 
+/// Passes that rely on every access being through a place of the right type. A module that takes or
+/// follows addresses is left as it is by them: an address is a byte offset, which means something else
+/// in another layout, and a store at an address may change any part of any field. Hardware refuses
+/// such modules anyway.
+const NEED_PLACES: &[&str] = &[
+    "split",
+    "step_time",
+    "if_convert",
+    "range_fold",
+    "state",
+    "saturate",
+    "late_clear",
+    "early_compare",
+];
+
+impl Pass {
+    fn apply(&self, module: &mut Module, settings: &Settings) {
+        if !(NEED_PLACES.contains(&self.name) && module.has_addresses()) {
+            (self.run)(module, settings);
+        }
+    }
+}
+
 /// There is no pass of this name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownPass(pub String);
@@ -252,7 +275,7 @@ pub fn find(name: &str) -> Result<&'static Pass, UnknownPass> {
 /// # Errors
 /// There is no such pass; the module is as before.
 pub fn run(name: &str, module: &mut Module, settings: &Settings) -> Result<(), UnknownPass> {
-    (find(name)?.run)(module, settings);
+    find(name)?.apply(module, settings);
     Ok(())
 }
 
@@ -272,7 +295,7 @@ pub fn run_pipeline(
         .map(|name| find(name))
         .collect::<Result<Vec<_>, _>>()?;
     for pass in passes {
-        (pass.run)(module, settings);
+        pass.apply(module, settings);
         debug_assert_eq!(iecc_ir::verify(module).err(), None, "after {}", pass.name);
         observer(pass.name, module);
     }
@@ -292,7 +315,12 @@ mod tests {
                 pass.name
             );
         }
-        for name in SOFTWARE.iter().chain(HARDWARE).chain(CHANGE_STATE) {
+        for name in SOFTWARE
+            .iter()
+            .chain(HARDWARE)
+            .chain(CHANGE_STATE)
+            .chain(NEED_PLACES)
+        {
             assert!(find(name).is_ok(), "{name}");
         }
         assert_eq!(find("inlin").unwrap_err(), UnknownPass("inlin".to_owned()));

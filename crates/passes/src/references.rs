@@ -45,6 +45,7 @@ impl References {
 fn is_certain(uncertain: &EntitySet<RefParam>, place: &Place) -> bool {
     let root = match place.root {
         Root::State | Root::Input | Root::Output | Root::Local(_) => true,
+        Root::Deref { .. } => false,
         Root::Ref(param) => !uncertain.contains(param),
     };
     root && place.is_static()

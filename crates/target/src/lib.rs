@@ -37,6 +37,8 @@ pub enum Refusal {
     Float,
     /// A place whose index is not constant.
     DynamicPlace,
+    /// A reference that is a value.
+    Reference,
     /// A fault that could end a scan.
     Fault,
     /// The absolute time of a scan.

@@ -23,6 +23,7 @@ pub(super) struct Body<'a> {
     pub(super) rng: &'a mut Rng,
     pub(super) builder: FunctionBuilder,
     pub(super) routes: Vec<Route>,
+    pub(super) refs: Vec<MemType>,
     name: String,
     types: Vec<Type>,
     variables: Vec<(Variable, Type)>,
@@ -48,6 +49,7 @@ impl<'a> Body<'a> {
             rng,
             builder: FunctionBuilder::new(name, &[], &[]),
             routes: Vec::new(),
+            refs: Vec::new(),
             name: name.to_owned(),
             types: value_types(options),
             variables: Vec::new(),
@@ -74,6 +76,7 @@ impl<'a> Body<'a> {
             self.builder.local(format!("l{index}"), ty);
         }
         self.routes = routes(self.module, refs, locals);
+        self.refs = refs.to_vec();
         self.results = results.to_vec();
         for (index, &ty) in params.iter().enumerate() {
             let param = self.builder.param(index);

@@ -35,6 +35,8 @@ pub struct Options {
     pub division: bool,
     /// Indices known only at run time.
     pub dynamic_places: bool,
+    /// Addresses: of what lies there, of something else, and of nothing.
+    pub addresses: bool,
     /// The absolute time of a scan.
     pub now: bool,
     /// The time since the scan before.
@@ -56,6 +58,7 @@ impl Options {
             floats: true,
             division: true,
             dynamic_places: true,
+            addresses: true,
             now: true,
             step: true,
             elapsed: true,
@@ -72,6 +75,7 @@ impl Options {
             floats: false,
             division: false,
             dynamic_places: false,
+            addresses: false,
             now: false,
             elapsed: false,
             ..Self::all()

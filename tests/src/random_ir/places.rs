@@ -28,7 +28,7 @@ impl Route {
     pub(super) fn is_kept(&self) -> bool {
         match self.root {
             Root::State | Root::Ref(_) | Root::Local(_) => !self.is_constant,
-            Root::Input | Root::Output => false,
+            Root::Input | Root::Output | Root::Deref { .. } => false,
         }
     }
 

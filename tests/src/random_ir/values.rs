@@ -27,6 +27,7 @@ impl Body<'_> {
             2 | 3 if ty == Type::I1 => self.compare(depth - 1),
             2 | 3 => self.convert(ty, depth - 1),
             4 => self.load(ty),
+            5 if ty == Type::I64 && self.options.addresses && self.rng.one_in(3) => self.address(),
             5 if ty == Type::I64 && self.options.now => self.builder.now(),
             6 if matches!(ty, Type::I32 | Type::I64) => self.time(ty),
             _ => self.binary(ty, depth - 1),
@@ -117,6 +118,15 @@ impl Body<'_> {
         }
     }
 
+    fn address(&mut self) -> Value {
+        let is_memory = |route: &Route| matches!(route.end, PlaceType::Mem(_));
+        let is_state = |route: &Route| matches!(route.root, Root::State | Root::Ref(_));
+        match self.place(|route| is_memory(route) && is_state(route)) {
+            Some(place) => self.builder.address(place),
+            None => self.constant(Type::I64),
+        }
+    }
+
     fn load(&mut self, ty: Type) -> Value {
         self.spend(1);
         // Inputs are few but are what makes a module lively.
@@ -182,7 +192,47 @@ impl Body<'_> {
                 Step::Bit(width) => place.bit(self.index(width)),
             };
         }
-        Some((place, end))
+        Some((self.perhaps_by_address(place), end))
+    }
+
+    /// Now and then the address of a place, or of a part of the way to it, in its stead; now and then
+    /// something close to that.
+    fn perhaps_by_address(&mut self, place: Place) -> Place {
+        let rarely = self.options.addresses && self.rng.one_in(10);
+        if !rarely || !matches!(place.root, Root::State | Root::Ref(_)) {
+            return place;
+        }
+        let (start, cut) = (
+            self.root_type(place.root),
+            self.rng.below(place.path.len() + 1),
+        );
+        let found = Place::walk(&self.module.types, start, &place.path[..cut]);
+        let Some(PlaceType::Mem(ty)) = found else {
+            return place;
+        };
+        let before = Place {
+            root: place.root,
+            path: place.path[..cut].to_vec(),
+        };
+        let mut value = self.builder.address(before);
+        if self.rng.one_in(4) {
+            let distance = self
+                .rng
+                .pick(&[1, 4, 8, 40, 1 << 20, u64::MAX, u64::MAX - 7]);
+            let distance = self.builder.constant(Type::I64, distance);
+            value = self.builder.binary(BinaryOp::Add, value, distance);
+        }
+        self.spend(3);
+        Place::root(Root::Deref { value, ty }).join(&place.path[cut..])
+    }
+
+    fn root_type(&self, root: Root) -> MemType {
+        match root {
+            Root::Ref(param) => self.refs[param.as_u32() as usize],
+            Root::State | Root::Input | Root::Output | Root::Local(_) | Root::Deref { .. } => {
+                MemType::Struct(self.module.state)
+            }
+        }
     }
 
     /// Mostly inside the bounds; a value may be anything.

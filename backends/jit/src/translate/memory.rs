@@ -53,6 +53,11 @@ impl Translator<'_, '_> {
                 let base = self.context_field(pointer, ScanContext::OUTPUTS);
                 (base, self.regions.output)
             }
+            Root::Deref { value, .. } => {
+                let (base, inside) = self.at_address(value, ty);
+                exists = Some(inside);
+                (base, self.regions.state)
+            }
             Root::Local(local) => {
                 let offset = self.local_offsets[local];
                 (self.local_base(offset), self.regions.locals)
@@ -81,6 +86,50 @@ impl Translator<'_, '_> {
             ty,
             bit: None,
         }
+    }
+
+    /// Where an address leads, and whether all that is taken to lie there is inside the state.
+    fn at_address(&mut self, value: Value, ty: MemType) -> (clif::Value, clif::Value) {
+        let (program, pointer) = (self.program, self.pointer);
+        let bytes = program.layout.size(&program.module.types, ty);
+        let address = self.value(value);
+        let offset = self.ins().iadd_imm_s(address, -1);
+        let zero = self.ins().iconst(types::I64, 0);
+        let inside = match program.plan.state_len.checked_sub(bytes) {
+            Some(last) => {
+                let last = self.ins().iconst(types::I64, last as i64);
+                self.ins()
+                    .icmp(IntCC::UnsignedLessThanOrEqual, offset, last)
+            }
+            None => self.ins().iconst(types::I8, 0),
+        };
+        let offset = self.ins().select(inside, offset, zero);
+        let offset = match pointer {
+            types::I64 => offset,
+            _ => self.ins().ireduce(pointer, offset),
+        };
+        let state = self.state;
+        (self.ins().iadd(state, offset), inside)
+    }
+
+    /// The address of a place of the state; 0 if it does not exist or is a local of a caller.
+    pub(super) fn address_of(&mut self, place: &Place) -> clif::Value {
+        let at = self.address(place);
+        let (pointer, state) = (self.pointer_to(&at), self.state);
+        let mut offset = self.ins().isub(pointer, state);
+        if self.pointer != types::I64 {
+            offset = self.ins().uextend(types::I64, offset);
+        }
+        let state_len = self.program.plan.state_len as i64;
+        let end = self.ins().iconst(types::I64, state_len);
+        let inside = self.ins().icmp(IntCC::UnsignedLessThanOrEqual, offset, end);
+        let inside = match at.exists {
+            Some(exists) => self.ins().band(inside, exists),
+            None => inside,
+        };
+        let address = self.ins().iadd_imm_s(offset, 1);
+        let zero = self.ins().iconst(types::I64, 0);
+        self.ins().select(inside, address, zero)
     }
 
     fn project(&mut self, address: &mut Address, step: Projection) {
@@ -157,6 +206,9 @@ impl Translator<'_, '_> {
         let value = self
             .ins()
             .load(clif_type(ty), address.flags, address.base, address.offset);
+        if ty == Type::I1 && self.program.plan.has_addresses {
+            return (ty, self.ins().band_imm_u(value, 1));
+        }
         (ty, value)
     }
 

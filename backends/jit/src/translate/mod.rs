@@ -238,6 +238,7 @@ impl Translator<'_, '_> {
             InstData::Store { place, value } => return self.store(place, *value),
             InstData::Copy { to, from } => return self.copy(to, from),
             InstData::Clear { place } => return self.clear(place),
+            InstData::Address { place } => self.address_of(place),
             InstData::Now => self.now(),
             InstData::Elapsed { place, unit_ns, ty } => self.elapsed(place, *unit_ns, *ty),
             InstData::Step { unit_ns, ty } => self.step(*unit_ns, *ty),

@@ -238,7 +238,7 @@ fn region_of(module: &Module, root: Root) -> Option<StructId> {
         Root::State => Some(module.state),
         Root::Input => Some(module.input),
         Root::Output => Some(module.output),
-        Root::Ref(_) | Root::Local(_) => None,
+        Root::Ref(_) | Root::Local(_) | Root::Deref { .. } => None,
     }
 }
 

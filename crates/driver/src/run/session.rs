@@ -43,7 +43,7 @@ impl Cell {
         let region = match place.root {
             Root::Input => Region::Input,
             Root::Output => Region::Output,
-            Root::State | Root::Ref(_) | Root::Local(_) => {
+            Root::State | Root::Ref(_) | Root::Local(_) | Root::Deref { .. } => {
                 panic!("engines show inputs and outputs only")
             }
         };

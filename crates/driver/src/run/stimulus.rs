@@ -281,7 +281,7 @@ fn bind_column(
             }
             None => Setting::Poke(place),
         },
-        Root::Output | Root::Ref(_) | Root::Local(_) => {
+        Root::Output | Root::Ref(_) | Root::Local(_) | Root::Deref { .. } => {
             return refuse(
                 Code::E6012,
                 format!("`{name}` is an output, which the program sets"),

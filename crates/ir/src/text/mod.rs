@@ -36,6 +36,8 @@
 //! b0:
 //!   copy old, t                            ; whole structs and arrays
 //!   clear t
+//!   v0: i64 = address t.PRE               ; where it lies in the state, as a number
+//!   v1: i32 = load deref v0: i32           ; and what lies there
 //!   return
 //! }
 //! ```

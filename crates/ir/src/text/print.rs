@@ -334,6 +334,10 @@ impl<'m> Printer<'m> {
                 out.push_str("clear ");
                 self.place(out, place)
             }
+            InstData::Address { place } => {
+                out.push_str("address ");
+                self.place(out, place)
+            }
             InstData::Now => out.write_str("now"),
             InstData::Elapsed { place, unit_ns, .. } => {
                 out.push_str("elapsed ");
@@ -403,12 +407,16 @@ impl<'m> Printer<'m> {
             Root::State => out.push_str("state"),
             Root::Input => out.push_str("input"),
             Root::Output => out.push_str("output"),
+            Root::Deref { value, ty } => {
+                write!(out, "deref {}: ", self.value(value))?;
+                mem_type(out, &self.module.types, ty)?;
+            }
             Root::Ref(param) => match self.func.refs.get(param) {
-                Some(data) => write!(out, "{}", Name(&data.name))?,
+                Some(data) => write!(out, "{}", Head(&data.name))?,
                 None => write!(out, "<{param}>")?,
             },
             Root::Local(local) => match self.func.locals.get(local) {
-                Some(data) => write!(out, "{}", Name(&data.name))?,
+                Some(data) => write!(out, "{}", Head(&data.name))?,
                 None => write!(out, "<{local}>")?,
             },
         }
@@ -449,6 +457,18 @@ impl fmt::Display for Name<'_> {
             f.write_str(self.0)
         } else {
             Quoted(self.0).fmt(f)
+        }
+    }
+}
+
+/// A name a place begins with.
+struct Head<'a>(&'a str);
+
+impl fmt::Display for Head<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            "deref" => Quoted(self.0).fmt(f),
+            name => Name(name).fmt(f),
         }
     }
 }

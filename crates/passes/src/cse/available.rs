@@ -80,22 +80,15 @@ impl Available {
         self.roots.retain(|root, _| match root {
             Root::Input => true,
             Root::Local(_) => refs.iter().all(|place| place.root != *root),
-            Root::State | Root::Output | Root::Ref(_) => false,
+            Root::State | Root::Output | Root::Ref(_) | Root::Deref { .. } => false,
         });
     }
 
     fn forget_aliases(&mut self, root: Root) {
-        if may_alias(root) {
+        if root.may_alias() {
             self.roots
-                .retain(|&other, _| other == root || !may_alias(other));
+                .retain(|&other, _| other == root || !other.may_alias());
         }
-    }
-}
-
-fn may_alias(root: Root) -> bool {
-    match root {
-        Root::State | Root::Ref(_) => true,
-        Root::Input | Root::Output | Root::Local(_) => false,
     }
 }
 

@@ -14,7 +14,7 @@ pub(super) fn remove_unread(func: &mut Function) -> bool {
     }
     let is_unread = |place: &Place| match place.root {
         Root::Local(local) => !read.contains(local),
-        Root::State | Root::Input | Root::Output | Root::Ref(_) => false,
+        Root::State | Root::Input | Root::Output | Root::Ref(_) | Root::Deref { .. } => false,
     };
     for block in func.layout.clone() {
         let mut insts = std::mem::take(&mut func.block_mut(block).insts);
@@ -38,7 +38,7 @@ fn read_locals(func: &Function) -> EntitySet<Local> {
     let mut pending = Vec::new();
     let local_of = |place: &Place| match place.root {
         Root::Local(local) => Some(local),
-        Root::State | Root::Input | Root::Output | Root::Ref(_) => None,
+        Root::State | Root::Input | Root::Output | Root::Ref(_) | Root::Deref { .. } => None,
     };
     let blocks = func.layout.iter().map(|&block| func.block(block));
     for &inst in blocks.flat_map(|block| &block.insts) {

@@ -32,6 +32,7 @@ impl Regions {
             Root::Output => MemType::Struct(self.output),
             Root::Ref(param) => func.refs[param].ty,
             Root::Local(local) => func.locals[local].ty,
+            Root::Deref { ty, .. } => ty,
         }
     }
 }
@@ -62,7 +63,9 @@ pub(super) fn fix_indices(rewriter: &mut Rewriter<'_>, inst: Inst) -> Access {
             (Access::Unchanged, Access::Unchanged) => Access::Unchanged,
             (Access::Fixed, _) | (_, Access::Fixed) => Access::Fixed,
         },
-        InstData::Elapsed { place, .. } => inside_only(fix(rewriter, place)),
+        InstData::Elapsed { place, .. } | InstData::Address { place } => {
+            inside_only(fix(rewriter, place))
+        }
         InstData::Call { refs, .. } => {
             let fixed = refs
                 .iter_mut()
@@ -89,7 +92,7 @@ pub(super) fn fix_indices(rewriter: &mut Rewriter<'_>, inst: Inst) -> Access {
     access
 }
 
-/// A call or `elapsed` with an index outside has other effects; it keeps its index value.
+/// A call, `elapsed` or `address` with an index outside has other effects; it keeps its index value.
 fn inside_only(access: Access) -> Access {
     match access {
         Access::Outside => Access::Unchanged,

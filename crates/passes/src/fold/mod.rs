@@ -65,6 +65,7 @@ fn evaluate(func: &Function, data: &InstData, known: impl Fn(Value) -> Option<u6
         | InstData::Store { .. }
         | InstData::Copy { .. }
         | InstData::Clear { .. }
+        | InstData::Address { .. }
         | InstData::Now
         | InstData::Elapsed { .. }
         | InstData::Step { .. }

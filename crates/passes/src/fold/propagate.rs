@@ -182,6 +182,7 @@ impl<'f> Solver<'f> {
             | InstData::Store { .. }
             | InstData::Copy { .. }
             | InstData::Clear { .. }
+            | InstData::Address { .. }
             | InstData::Now
             | InstData::Elapsed { .. }
             | InstData::Step { .. }

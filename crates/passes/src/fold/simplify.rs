@@ -114,6 +114,7 @@ impl Rewriter<'_> {
             | InstData::Store { .. }
             | InstData::Copy { .. }
             | InstData::Clear { .. }
+            | InstData::Address { .. }
             | InstData::Elapsed { .. }
             | InstData::Call { .. } => Step::Keep,
         }
@@ -128,7 +129,7 @@ impl Rewriter<'_> {
             InstData::Compare { .. } => Type::I1,
             InstData::Unary { arg, .. } => self.ty(*arg),
             InstData::Binary { args, .. } | InstData::Select { args, .. } => self.ty(args[0]),
-            InstData::Now => Type::I64,
+            InstData::Now | InstData::Address { .. } => Type::I64,
             InstData::Load { .. }
             | InstData::Store { .. }
             | InstData::Copy { .. }

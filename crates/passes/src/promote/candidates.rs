@@ -71,7 +71,7 @@ impl Candidates {
     }
 
     fn note_root(&mut self, root: Root) {
-        if may_alias(root) {
+        if root.may_alias() {
             self.aliases.insert(root);
         }
     }
@@ -87,7 +87,7 @@ impl Candidates {
         self.scalars
             .retain(|place, is_stored| !*is_stored || certain(place.root));
         if self.aliases.len() > 1 {
-            self.scalars.retain(|place, _| !may_alias(place.root));
+            self.scalars.retain(|place, _| !place.root.may_alias());
         }
         self.drop_outputs(func);
         let promoted = self.scalars.into_iter().map(|(place, is_stored)| Promoted {
@@ -156,14 +156,6 @@ impl Candidates {
                 }
             }
         }
-    }
-}
-
-/// Whether places of this root may be the same memory as places of another.
-fn may_alias(root: Root) -> bool {
-    match root {
-        Root::State | Root::Ref(_) => true,
-        Root::Input | Root::Output | Root::Local(_) => false,
     }
 }
 

@@ -7,7 +7,7 @@
 use crate::edit::BlockEditor;
 use cranelift_entity::EntitySet;
 use iecc_ir::{
-    FuncId, Function, Inst, InstData, Layout, Local, MemType, Module, Place, PlaceType, Root,
+    FuncId, Function, Inst, InstData, Layout, Local, MemType, Module, Place, PlaceType, Root, Type,
     TypeTable, Value,
 };
 use std::collections::BTreeMap;
@@ -42,7 +42,7 @@ pub(super) fn expand(module: &mut Module, limits: Limits) {
     let layout = Layout::new(&module.types);
     let ids: Vec<FuncId> = module.funcs.keys().collect();
     for id in ids {
-        let chosen = choose(module, &module.funcs[id], limits);
+        let chosen = choose(module, &layout, &module.funcs[id], limits);
         if chosen.is_empty() {
             continue;
         }
@@ -61,8 +61,14 @@ pub(super) fn expand(module: &mut Module, limits: Limits) {
 }
 
 /// The copies and clears to take apart, and what each moves.
-fn choose(module: &Module, func: &Function, limits: Limits) -> BTreeMap<Inst, MemType> {
+fn choose(
+    module: &Module,
+    layout: &Layout,
+    func: &Function,
+    limits: Limits,
+) -> BTreeMap<Inst, MemType> {
     let mut left = limits.in_all;
+    let has_addresses = module.has_addresses();
     let mut fixed = None;
     let mut chosen = BTreeMap::new();
     let blocks = func.layout.iter().map(|&block| func.block(block));
@@ -74,7 +80,7 @@ fn choose(module: &Module, func: &Function, limits: Limits) -> BTreeMap<Inst, Me
         let fixed = fixed.get_or_insert_with(|| fixed_locals(func));
         let can_be_promoted = |place: &&Place| match place.root {
             Root::Local(local) => !fixed.contains(local),
-            Root::State | Root::Input | Root::Output | Root::Ref(_) => false,
+            Root::State | Root::Input | Root::Output | Root::Ref(_) | Root::Deref { .. } => false,
         };
         let limit = if data.places().iter().any(can_be_promoted) {
             limits.of_local
@@ -82,6 +88,9 @@ fn choose(module: &Module, func: &Function, limits: Limits) -> BTreeMap<Inst, Me
             limits.of_any
         };
         let ty = type_of(module, func, to);
+        if has_addresses && !is_dense(module, layout, ty) {
+            continue;
+        }
         if let Some(leaves) = leaf_count(&module.types, ty, limit.min(left)) {
             left -= leaves;
             chosen.insert(inst, ty);
@@ -115,6 +124,21 @@ fn type_of(module: &Module, func: &Function, place: &Place) -> MemType {
         panic!("verified copies and clears move memory")
     };
     ty
+}
+
+/// Whether scalars hold every bit of a type: otherwise, where addresses are followed, bytes that no
+/// scalar shows may hold something, which a copy moves.
+fn is_dense(module: &Module, layout: &Layout, ty: MemType) -> bool {
+    match ty {
+        MemType::Scalar(scalar) => scalar != Type::I1,
+        MemType::Array(id) => is_dense(module, layout, module.types.array_type(id).element),
+        MemType::Struct(id) => {
+            let fields = &module.types.structs[id].fields;
+            let sizes = fields.iter().map(|f| layout.size(&module.types, f.ty));
+            sizes.sum::<u64>() == layout.size(&module.types, ty)
+                && fields.iter().all(|f| is_dense(module, layout, f.ty))
+        }
+    }
 }
 
 /// How many scalars a type has, if at most `limit`.

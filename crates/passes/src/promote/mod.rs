@@ -63,6 +63,7 @@ fn run(module: &mut Module, limit: usize, expansion: expand::Limits) {
         (Root::Output, module.output),
     ];
     let references = References::of(module);
+    let has_addresses = module.has_addresses();
     for (id, func) in module.funcs.iter_mut() {
         remove_unreachable(func);
         let types = &module.types;
@@ -71,6 +72,7 @@ fn run(module: &mut Module, limit: usize, expansion: expand::Limits) {
             let start = match (region, place.root) {
                 (_, Root::Ref(param)) => func.refs[param].ty,
                 (_, Root::Local(local)) => func.locals[local].ty,
+                (_, Root::Deref { ty, .. }) => ty,
                 (Some(&(_, id)), _) => MemType::Struct(id),
                 (None, _) => panic!("every root is a region or a reference"),
             };
@@ -78,6 +80,10 @@ fn run(module: &mut Module, limit: usize, expansion: expand::Limits) {
         };
         let certain = |root| references.certain(id, root);
         let mut promoted = Candidates::of(func, &summaries).promoted(func, &certain, &type_of);
+        if has_addresses {
+            // Any byte may have been put there, and storing what was loaded makes a bit of it.
+            promoted.retain(|p| p.ty != Type::I1 || !p.place.root.may_alias());
+        }
         let others = promoted.iter().filter(|p| !p.is_local()).count();
         if others > limit {
             promoted.retain(Promoted::is_local);

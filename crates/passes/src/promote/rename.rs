@@ -219,7 +219,7 @@ impl Renamer<'_> {
         let Promoted { place, ty, .. } = &self.promoted[variable];
         let data = match place.root {
             Root::Output | Root::Local(_) => InstData::Const { ty: *ty, bits: 0 },
-            Root::State | Root::Input | Root::Ref(_) => InstData::Load {
+            Root::State | Root::Input | Root::Ref(_) | Root::Deref { .. } => InstData::Load {
                 place: place.clone(),
             },
         };

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 pub(super) struct Summary {
     /// Fields of the state.
     pub(super) state: BTreeSet<u32>,
-    /// Whether it passes on or moves the state as a whole.
+    /// Whether it passes on or moves the state as a whole, or follows addresses in it.
     pub(super) whole_state: bool,
     /// Whether it stores outputs.
     pub(super) outputs: bool,
@@ -58,7 +58,7 @@ impl Summary {
             (Root::State, Some(Projection::Field(field))) => {
                 self.state.insert(*field);
             }
-            (Root::State, _) => self.whole_state = true,
+            (Root::State | Root::Deref { .. }, _) => self.whole_state = true,
             (Root::Output, _) => self.outputs = true,
             (Root::Input | Root::Ref(_) | Root::Local(_), _) => {}
         }

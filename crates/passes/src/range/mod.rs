@@ -303,6 +303,7 @@ impl<'m> Analysis<'m> {
             | InstData::Store { .. }
             | InstData::Copy { .. }
             | InstData::Clear { .. }
+            | InstData::Address { .. }
             | InstData::Elapsed { .. }
             | InstData::Call { .. } => Range::of_type(ty),
         }

@@ -180,6 +180,9 @@ impl Parser {
             ("clear", _) => Ok(InstData::Clear {
                 place: self.place(body)?,
             }),
+            ("address", _) => Ok(InstData::Address {
+                place: self.place(body)?,
+            }),
             ("now", _) => Ok(InstData::Now),
             ("elapsed", Some(ty)) => {
                 let place = self.place(body)?;
@@ -257,6 +260,9 @@ impl Parser {
     }
 
     fn place(&mut self, body: &Body<'_>) -> Result<Place> {
+        if self.accept_word("deref") {
+            return self.deref();
+        }
         let at = self.next;
         let name = self.name()?;
         let Some(&(root, start)) = body.roots.get(&name) else {
@@ -264,6 +270,16 @@ impl Parser {
             return self.fail("state, input, output, a reference parameter or a local");
         };
         let (path, _) = self.path(start, false, &mut |p| p.value().map(Index::Value))?;
+        Ok(Place { root, path })
+    }
+
+    /// `v3: type` and the way from there.
+    fn deref(&mut self) -> Result<Place> {
+        let value = self.value()?;
+        self.expect(":")?;
+        let ty = self.mem_type(0)?;
+        let (path, _) = self.path(ty, false, &mut |p| p.value().map(Index::Value))?;
+        let root = Root::Deref { value, ty };
         Ok(Place { root, path })
     }
 
