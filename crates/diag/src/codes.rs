@@ -101,6 +101,16 @@ codes! {
     E1007 Error "routine does not exist";
     E1008 Error "instruction does not exist";
     E1009 Error "program does not exist";
+    E1010 Error "type does not exist";
+    E1011 Error "section cannot stand here";
+    E1012 Error "variable does not exist";
+    E1013 Error "variable exists only while its block runs";
+    E1014 Error "global variable is not declared in this unit";
+    E1015 Error "member is private";
+    E1016 Error "enumeration has no such value";
+    E1017 Error "enumerator is ambiguous";
+    E1018 Error "function or instance does not exist";
+    E1019 Error "parameter does not exist";
     // 2 types and constants
     E2001 Error "operand is of the wrong kind";
     E2002 Error "index is outside the array";
@@ -112,6 +122,43 @@ codes! {
     E2008 Error "initial value does not fit its type";
     E2009 Error "type contains itself";
     E2010 Error "tag or member is of a type that is not compiled";
+    E2020 Error "value is of the wrong type";
+    E2021 Error "name is no type";
+    E2022 Error "type does not fit here";
+    E2023 Error "limits are the wrong way round";
+    E2024 Error "string length is out of range";
+    E2025 Error "bounds of an array do not go together";
+    E2026 Error "value is outside its subrange";
+    E2027 Error "operator does not take this type";
+    E2028 Error "division by zero";
+    E2029 Error "operands have no common type";
+    E2030 Error "constant is needed";
+    E2031 Error "value has no elements";
+    E2032 Error "subscript is no integer";
+    E2033 Error "value has no such bits";
+    E2034 Error "value is no reference";
+    // 3 statements and flow
+    E3001 Error "value stands outside of a declaration";
+    E3002 Error "reference to something that has none";
+    E3003 Error "THIS or SUPER has no meaning here";
+    E3004 Error "call without parentheses";
+    E3005 Error "EXIT or CONTINUE outside of a loop";
+    E3006 Error "variable cannot be changed from here";
+    E3007 Error "control variable of a loop is changed";
+    E3008 Error "loop counts in something that is no integer";
+    E3009 Error "step of a loop is 0";
+    E3010 Error "selector of CASE is of the wrong type";
+    E3011 Error "label of CASE stands twice";
+    E3012 Error "statement does nothing";
+    E3013 Error "block is used as a value";
+    E3014 Error "function gives no value";
+    E3015 Error "in-out is given something that is no variable";
+    E3016 Error "in-out has no argument";
+    E3017 Error "arguments by name and by position are mixed";
+    E3018 Error "too many arguments";
+    E3019 Error "argument is given twice";
+    E3020 Error "argument has the wrong direction";
+    E3021 Error "function does not take these arguments";
     // 5 ladder and L5X
     E5001 Error "XML is malformed";
     E5002 Error "file is not an L5X export";
@@ -175,6 +222,9 @@ codes! {
     E6065 Error "option means nothing for this language";
     E6080 Error "file is no case of the conformance suite";
     E6081 Error "case of the conformance suite failed";
+    E6040 Error "declarations of a global variable differ";
+    E6041 Error "global variable does not exist";
+    E6042 Error "task does not exist";
     // 7 target cannot express this
     E7001 Error "target cannot express a loop";
     E7002 Error "target cannot express a division";

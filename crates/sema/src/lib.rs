@@ -7,3 +7,4 @@
 
 pub mod hir;
 pub mod logix;
+pub mod st;

@@ -32,6 +32,11 @@ pub struct TagId(pub(crate) u32);
 pub struct PouId(pub(crate) u32);
 
 impl PouId {
+    /// The id of a position.
+    pub fn from_index(index: usize) -> Self {
+        Self(index as u32)
+    }
+
     /// Position in [`Program::pous`].
     pub fn index(self) -> usize {
         self.0 as usize
@@ -160,6 +165,22 @@ pub struct Program {
 }
 
 impl Program {
+    /// A program without anything.
+    pub fn empty() -> Self {
+        Self {
+            name: String::new(),
+            types: Types::default(),
+            tags: Vec::new(),
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            names: Vec::new(),
+            pous: Vec::new(),
+            inits: Inits::default(),
+            tasks: Vec::new(),
+            first_scan: None,
+        }
+    }
+
     /// The unit of an id.
     pub fn pou(&self, id: PouId) -> &Pou {
         &self.pous[id.index()]

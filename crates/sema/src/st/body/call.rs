@@ -1,0 +1,523 @@
+//! Calls: what is called, which argument goes where.
+
+use super::{Body, Operand, OperandKind, Place, Rights};
+use crate::hir::code::{Call, ExprKind, PathId, PathStep, Root, StmtKind};
+use crate::st::signature::{Def, PouId, Storage, Var};
+use crate::st::types::{TypeId, TypeKind};
+use iecc_ast::Symbol;
+use iecc_ast::st::{self, Argument, ArgumentKind, ExprKind as Written, PouKind, SectionKind};
+use iecc_diag::{Code as Message, Diagnostic};
+use iecc_source::TextRange;
+
+/// What stands before the parentheses.
+enum Callee {
+    /// Functions of one name; several are overloads of the library.
+    Functions(Vec<PouId>),
+    /// A block, by its instance.
+    Block(PouId, Place),
+    /// A method of an instance.
+    Method(PouId, Place),
+}
+
+impl Body<'_, '_> {
+    /// A call as a statement.
+    pub(super) fn call_statement(&mut self, id: st::Id<st::Expr>) {
+        let written = self.arena()[id];
+        let Written::Call { callee, arguments } = written.kind else {
+            let operand = self.place(id, None);
+            if operand.is_error() {
+                return;
+            }
+            let message = "this does nothing; a call has parentheses";
+            self.error(Message::E3012, written.range, message);
+            return;
+        };
+        match self.callee(callee, written.range) {
+            Some(Callee::Block(pou, place)) => {
+                self.block_call(pou, &place, arguments, written.range)
+            }
+            Some(callee) => {
+                let result = self.call_of(callee, arguments, written.range, None);
+                if let OperandKind::Value(value) = result.kind {
+                    self.before(StmtKind::Eval(value), written.range);
+                }
+            }
+            None => self.arguments_only(arguments),
+        }
+    }
+
+    /// A call in an expression.
+    pub(super) fn call(
+        &mut self,
+        callee: st::Id<st::Expr>,
+        arguments: st::List<Argument>,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        if let Some(operand) = self.typed_conversion(callee, arguments, range) {
+            return operand;
+        }
+        match self.callee(callee, range) {
+            Some(Callee::Block(..)) => {
+                self.arguments_only(arguments);
+                let message = "a block gives no value; call it in a statement and use its outputs";
+                self.error(Message::E3013, range, message)
+            }
+            Some(callee) => {
+                let result = self.call_of(callee, arguments, range, want);
+                if result.ty == TypeId::NOTHING {
+                    return self.error(Message::E3014, range, "this function gives no value");
+                }
+                result
+            }
+            None => {
+                self.arguments_only(arguments);
+                Operand::error(range)
+            }
+        }
+    }
+
+    fn call_of(
+        &mut self,
+        callee: Callee,
+        arguments: st::List<Argument>,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        if self.constant_only {
+            let Callee::Functions(functions) = &callee else {
+                return self.error(Message::E2030, range, "a constant is needed here");
+            };
+            if !self.an.is_library(self.an.pou(functions[0]).unit) {
+                return self.error(Message::E2030, range, "a constant is needed here");
+            }
+        }
+        match callee {
+            Callee::Functions(functions) => self.function_call(&functions, arguments, range, want),
+            Callee::Method(method, place) => self.user_call(method, Some(place), arguments, range),
+            Callee::Block(..) => unreachable!("handled by the callers"),
+        }
+    }
+
+    /// After a mistake in what is called, mistakes in the arguments are still reported.
+    fn arguments_only(&mut self, arguments: st::List<Argument>) {
+        for argument in &self.arena()[arguments] {
+            if let Some(value) = argument.value {
+                self.expr(value, None);
+            }
+        }
+    }
+
+    fn callee(&mut self, id: st::Id<st::Expr>, range: TextRange) -> Option<Callee> {
+        let written = self.arena()[id];
+        match written.kind {
+            Written::Name(name) => self.named_callee(name, id, written.range),
+            Written::Member { base, member } => self.member_callee(id, base, member),
+            Written::Super => {
+                self.error(Message::E2010, range, "SUPER() is not compiled yet");
+                None
+            }
+            _ => self.instance_callee(id),
+        }
+    }
+
+    fn named_callee(
+        &mut self,
+        name: Symbol,
+        id: st::Id<st::Expr>,
+        range: TextRange,
+    ) -> Option<Callee> {
+        if self.own_symbol(name) {
+            return self.instance_callee(id);
+        }
+        if let Some(owner) = self.pou.map(|pou| self.an.pou(pou).owner.unwrap_or(pou))
+            && let Some(method) = self.an.method(owner, name)
+        {
+            let place = Place {
+                root: Root::Ref(0),
+                steps: Vec::new(),
+                rights: Rights::All,
+            };
+            return Some(Callee::Method(method, place));
+        }
+        let defs = self.an.lookup(self.namespace, name).to_vec();
+        self.functions_of(&defs).or_else(|| {
+            match defs.first() {
+                None => self.unknown_function(name, range),
+                Some(Def::Global(_)) => return self.instance_callee(id),
+                Some(_) => {
+                    let message = format!("`{}` is no function", self.text(name));
+                    self.error(Message::E1018, range, message);
+                }
+            }
+            None
+        })
+    }
+
+    fn unknown_function(&mut self, name: Symbol, range: TextRange) {
+        let message = format!("no function or instance is named `{}`", self.text(name));
+        let mut diagnostic = Diagnostic::new(Message::E1018, self.span(range), message);
+        let candidates = self.an.visible(self.namespace);
+        if let Some(close) = self.an.similar(name, candidates) {
+            diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
+        }
+        self.report(diagnostic);
+    }
+
+    fn functions_of(&self, defs: &[Def]) -> Option<Callee> {
+        let functions: Vec<PouId> = defs
+            .iter()
+            .filter_map(|def| match def {
+                Def::Pou(pou) if self.is_function(*pou) => Some(*pou),
+                Def::Pou(_) | Def::Type(_) | Def::Global(_) | Def::Namespace(_) => None,
+            })
+            .collect();
+        (!functions.is_empty()).then_some(Callee::Functions(functions))
+    }
+
+    fn member_callee(
+        &mut self,
+        id: st::Id<st::Expr>,
+        base: st::Id<st::Expr>,
+        member: st::Ident,
+    ) -> Option<Callee> {
+        let shadowed = match self.arena()[base].kind {
+            Written::Name(name) => self.own_symbol(name),
+            _ => false,
+        };
+        if !shadowed
+            && let Some(&[Def::Namespace(namespace), ..]) =
+                self.an.path(self.unit, self.namespace, base)
+        {
+            let defs = self.an.lookup_in(namespace, member.name).to_vec();
+            let found = self.functions_of(&defs);
+            if found.is_none() {
+                let message = format!("the namespace has no function `{}`", self.text(member.name));
+                self.error(Message::E1018, member.range, message);
+            }
+            return found;
+        }
+        let operand = self.place(base, None);
+        if operand.is_error() {
+            return None;
+        }
+        if let (OperandKind::Place(place), TypeKind::Instance(pou)) =
+            (&operand.kind, self.an.types.base(operand.ty))
+            && let Some(method) = self.an.method(*pou, member.name)
+        {
+            let place = place.clone();
+            return Some(Callee::Method(method, place));
+        }
+        self.instance_callee(id)
+    }
+
+    fn instance_callee(&mut self, id: st::Id<st::Expr>) -> Option<Callee> {
+        let operand = self.place(id, None);
+        if operand.is_error() {
+            return None;
+        }
+        if self.is_instance(&operand)
+            && let (OperandKind::Place(place), TypeKind::Instance(pou)) =
+                (&operand.kind, self.an.types.base(operand.ty))
+        {
+            let (pou, place) = (*pou, place.clone());
+            if self.an.pou(pou).kind != PouKind::Class {
+                let place = self.freeze(place, operand.range);
+                return Some(Callee::Block(pou, place));
+            }
+        }
+        let message = format!("{} cannot be called", self.type_name(operand.ty));
+        self.error(Message::E1018, operand.range, message);
+        None
+    }
+
+    /// The place with its subscripts and references evaluated now, for several uses.
+    fn freeze(&mut self, mut place: Place, range: TextRange) -> Place {
+        if let Root::Deref { address, .. } = &mut place.root {
+            *address = self.freeze_value(*address, range);
+        }
+        for step in &mut place.steps {
+            if let PathStep::IndexBy { value, .. } | PathStep::Character { value, .. } = step {
+                *value = self.freeze_value(*value, range);
+            }
+        }
+        place
+    }
+
+    fn freeze_value(
+        &mut self,
+        value: crate::hir::code::ExprId,
+        range: TextRange,
+    ) -> crate::hir::code::ExprId {
+        let ty = self.code.expr(value).ty;
+        let local = self.add_local("index", crate::hir::Type::Elementary(ty));
+        let path = self.add_path(Root::Local(local), Vec::new(), range);
+        self.before(StmtKind::Assign(path, value), range);
+        let path = self.add_path(Root::Local(local), Vec::new(), range);
+        self.add_expr(ExprKind::Load(path), ty, range)
+    }
+
+    /// `instance(input := …, output => …)`.
+    fn block_call(
+        &mut self,
+        pou: PouId,
+        place: &Place,
+        arguments: st::List<Argument>,
+        range: TextRange,
+    ) {
+        self.an.complete(pou);
+        let matched = self.matched(pou, arguments, range);
+        let mut refs: Vec<Option<PathId>> = Vec::new();
+        let shape = self.an.call_shape(pou);
+        refs.resize(shape.refs.len(), None);
+        for (var, argument) in &matched {
+            let Some(value) = argument.value else {
+                continue;
+            };
+            match var.section {
+                SectionKind::Input => self.block_input(pou, place, var, value),
+                SectionKind::InOut => {
+                    let path = self.in_out(var, value);
+                    if let (Storage::Ref(position), Some(path)) = (&var.storage, path) {
+                        refs[*position as usize - 1] = Some(path);
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.require_in_outs(pou, &matched, range);
+        let this = self.path_of(place, range);
+        let given: Option<Vec<PathId>> = refs.into_iter().collect();
+        if let Some(given) = given {
+            let callee = self.an.want(pou);
+            let refs = std::iter::once(this).chain(given).collect();
+            let call = self.add_call(Call {
+                callee,
+                refs,
+                args: Vec::new(),
+                outputs: Vec::new(),
+            });
+            let value = self.add_expr(ExprKind::Call(call), crate::hir::Elementary::Bool, range);
+            self.before(StmtKind::Eval(value), range);
+        }
+        for (var, argument) in &matched {
+            if var.section == SectionKind::Output {
+                self.block_output(place, var, argument);
+            }
+        }
+    }
+
+    fn block_input(&mut self, pou: PouId, place: &Place, var: &Var, value: st::Id<st::Expr>) {
+        let operand = self.expr(value, Some(var.ty));
+        let Some(steps) = self.field_steps(pou, place, var) else {
+            return;
+        };
+        let target = Place {
+            root: place.root,
+            steps,
+            rights: Rights::All,
+        };
+        match var.edge {
+            None => self.store(&target, var.ty, &operand, operand.range),
+            Some(edge) => self.edge_input(&target, edge, &operand),
+        }
+    }
+
+    /// The steps to a variable of an instance or of what it extends.
+    fn field_steps(&self, _pou: PouId, place: &Place, var: &Var) -> Option<Vec<PathStep>> {
+        let Storage::Field(field) = var.storage else {
+            return None;
+        };
+        let mut steps = place.steps.clone();
+        steps.push(PathStep::Field(field));
+        Some(steps)
+    }
+
+    fn block_output(&mut self, place: &Place, var: &Var, argument: &Argument) {
+        let Some(target) = argument.value else { return };
+        let Some(steps) = self.field_steps(PouId(0), place, var) else {
+            return;
+        };
+        let from = Operand {
+            kind: OperandKind::Place(Place {
+                root: place.root,
+                steps,
+                rights: Rights::OtherOutput,
+            }),
+            ty: var.ty,
+            range: argument.range,
+        };
+        self.output_to(from, target, argument);
+    }
+
+    /// Stores an output where `=>` points.
+    pub(super) fn output_to(
+        &mut self,
+        from: Operand,
+        target: st::Id<st::Expr>,
+        argument: &Argument,
+    ) {
+        let target = self.place(target, None);
+        let Some(to) = self.writable(&target) else {
+            return;
+        };
+        let from = if matches!(argument.kind, ArgumentKind::NegatedOutput(_)) {
+            self.unary_on(st::UnaryOp::Not, from, argument.range, None)
+        } else {
+            from
+        };
+        self.store(&to, target.ty, &from, argument.range);
+    }
+
+    /// The place an in-out stands for.
+    pub(super) fn in_out(&mut self, var: &Var, value: st::Id<st::Expr>) -> Option<PathId> {
+        let operand = self.place(value, None);
+        if operand.is_error() {
+            return None;
+        }
+        let OperandKind::Place(_) = &operand.kind else {
+            let message = format!("in-out `{}` takes a variable", self.text(var.name));
+            self.error(Message::E3015, operand.range, message);
+            return None;
+        };
+        let place = self.writable(&operand)?;
+        if self.an.types.strip(operand.ty) != self.an.types.strip(var.ty) {
+            if var.ty != TypeId::ERROR {
+                self.mismatch(&operand, var.ty);
+            }
+            return None;
+        }
+        Some(self.path_of(&place, operand.range))
+    }
+
+    pub(super) fn require_in_outs(
+        &mut self,
+        pou: PouId,
+        matched: &[(Var, Argument)],
+        range: TextRange,
+    ) {
+        let missing: Vec<Symbol> = self
+            .an
+            .pou(pou)
+            .section(SectionKind::InOut)
+            .filter(|var| !matched.iter().any(|(given, _)| given.name == var.name))
+            .map(|var| var.name)
+            .collect();
+        for name in missing {
+            let message = format!("in-out `{}` has no argument", self.text(name));
+            self.error(Message::E3016, range, message);
+        }
+    }
+
+    /// Which argument goes to which parameter, in the order of the arguments.
+    pub(super) fn matched(
+        &mut self,
+        pou: PouId,
+        arguments: st::List<Argument>,
+        range: TextRange,
+    ) -> Vec<(Var, Argument)> {
+        let written: Vec<Argument> = self.arena()[arguments].to_vec();
+        let positional = written
+            .iter()
+            .filter(|argument| argument.kind == ArgumentKind::Positional)
+            .count();
+        if positional > 0 && positional < written.len() && !self.an.options.codesys {
+            let message = "arguments are given either all by name or all by position";
+            self.error(Message::E3017, range, message);
+        }
+        let parameters: Vec<Var> = self
+            .an
+            .pou(pou)
+            .vars
+            .iter()
+            .filter(|var| {
+                matches!(
+                    var.section,
+                    SectionKind::Input | SectionKind::Output | SectionKind::InOut
+                )
+            })
+            .cloned()
+            .collect();
+        if positional > parameters.len() {
+            let message = format!(
+                "{positional} arguments are given but `{}` has {} parameters",
+                self.text(self.an.pou(pou).name),
+                parameters.len()
+            );
+            self.error(Message::E3018, range, message);
+        }
+        let mut matched: Vec<(Var, Argument)> = Vec::with_capacity(written.len());
+        let mut next = 0;
+        for argument in written {
+            let var = match argument.kind {
+                ArgumentKind::Positional => {
+                    next += 1;
+                    parameters.get(next - 1)
+                }
+                ArgumentKind::Input(name)
+                | ArgumentKind::Output(name)
+                | ArgumentKind::NegatedOutput(name) => {
+                    if name.name == self.an.words.en || name.name == self.an.words.eno {
+                        self.error(
+                            Message::E2010,
+                            name.range,
+                            "EN and ENO are not compiled yet",
+                        );
+                        continue;
+                    }
+                    let found = parameters.iter().find(|var| var.name == name.name);
+                    if found.is_none() {
+                        self.no_parameter(pou, name, &parameters);
+                    }
+                    found
+                }
+            };
+            let Some(var) = var else {
+                if let Some(value) = argument.value {
+                    self.expr(value, None);
+                }
+                continue;
+            };
+            if matched.iter().any(|(given, _)| given.name == var.name) {
+                let message = format!("`{}` is given twice", self.text(var.name));
+                self.error(Message::E3019, argument.range, message);
+                continue;
+            }
+            if self.right_arrow(var, &argument) {
+                matched.push((var.clone(), argument));
+            }
+        }
+        matched
+    }
+
+    /// Whether inputs stand with `:=` and outputs with `=>`.
+    fn right_arrow(&mut self, var: &Var, argument: &Argument) -> bool {
+        let output = matches!(
+            argument.kind,
+            ArgumentKind::Output(_) | ArgumentKind::NegatedOutput(_)
+        );
+        let named = argument.kind != ArgumentKind::Positional;
+        let wrong = named && (output != (var.section == SectionKind::Output));
+        if wrong {
+            let name = self.text(var.name);
+            let message = if output {
+                format!("`{name}` is an input; it takes a value with `:=`")
+            } else {
+                format!("`{name}` is an output; it goes to a variable with `=>`")
+            };
+            self.error(Message::E3020, argument.range, message);
+        }
+        !wrong
+    }
+
+    fn no_parameter(&mut self, pou: PouId, name: st::Ident, parameters: &[Var]) {
+        let callee = self.text(self.an.pou(pou).name);
+        let message = format!("`{callee}` has no parameter `{}`", self.text(name.name));
+        let mut diagnostic = Diagnostic::new(Message::E1019, self.span(name.range), message);
+        let candidates = parameters.iter().map(|var| var.name);
+        if let Some(close) = self.an.similar(name.name, candidates) {
+            diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
+        }
+        self.report(diagnostic);
+    }
+}

@@ -1,0 +1,782 @@
+//! Operators: which types they take, what type comes out, and what they are for constants.
+
+use super::{Body, Operand, OperandKind};
+use crate::hir::CompareOp;
+use crate::hir::code::{BinaryOp as Op, Conversion, ExprId, ExprKind, UnaryOp as Unary};
+use crate::st::constant::{Const, round_to};
+use crate::st::elementary::{El, Family};
+use crate::st::types::{TypeId, TypeKind};
+use iecc_ast::st::{self, BinaryOp, UnaryOp};
+use iecc_diag::{Code as Message, Diagnostic};
+use iecc_source::TextRange;
+
+impl Body<'_, '_> {
+    pub(super) fn unary(
+        &mut self,
+        op: UnaryOp,
+        operand: st::Id<st::Expr>,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        let operand = self.expr(operand, want);
+        self.unary_on(op, operand, range, want)
+    }
+
+    pub(super) fn unary_on(
+        &mut self,
+        op: UnaryOp,
+        operand: Operand,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        if operand.is_error() {
+            return Operand::error(range);
+        }
+        match op {
+            UnaryOp::Not => self.not(operand, range, want),
+            UnaryOp::Plus => {
+                if self.signed_operand(&operand, "+") {
+                    Operand { range, ..operand }
+                } else {
+                    Operand::error(range)
+                }
+            }
+            UnaryOp::Negate => self.negate(operand, range),
+        }
+    }
+
+    fn signed_operand(&mut self, operand: &Operand, sign: &str) -> bool {
+        let untyped = matches!(operand.ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL);
+        let fits = |el: El| el.is_num() || el.is_duration();
+        if untyped || self.an.types.elementary(operand.ty).is_some_and(fits) {
+            return true;
+        }
+        let name = self.type_name(operand.ty);
+        let message = format!("`{sign}` takes a number or a duration, not {name}");
+        self.error(Message::E2027, operand.range, message);
+        false
+    }
+
+    fn negate(&mut self, operand: Operand, range: TextRange) -> Operand {
+        if !self.signed_operand(&operand, "-") {
+            return Operand::error(range);
+        }
+        let el = self.an.types.elementary(operand.ty);
+        if let Some(value) = operand.as_const() {
+            let value = match value {
+                Const::Int(number) => Const::Int(-number),
+                Const::Real(number) => Const::Real(-number),
+                Const::Literal(single, double) => Const::Literal(-single, -double),
+                other => other.clone(),
+            };
+            return self.folded(value, operand.ty, range);
+        }
+        if el.is_some_and(|el| el.family() == Family::Unsigned) {
+            let message = format!("{} has no negative values", self.type_name(operand.ty));
+            return self.error(Message::E2027, range, message);
+        }
+        let el = el.expect("computed operands have a type");
+        let value = self.raw(&operand);
+        let value = self.add_expr(ExprKind::Unary(Unary::Negate, value), el.storage(), range);
+        Operand::value(value, TypeId::of(el), range)
+    }
+
+    fn not(&mut self, operand: Operand, range: TextRange, want: Option<TypeId>) -> Operand {
+        let operand = self.bit_operand(operand, want, "NOT");
+        if operand.is_error() {
+            return Operand::error(range);
+        }
+        let el = self.an.types.elementary(operand.ty).expect("a bit string");
+        if let Some(Const::Int(value)) = operand.as_const() {
+            let mask = el.range().1;
+            return Operand::constant(Const::Int(!value & mask), TypeId::of(el), range);
+        }
+        let value = self.raw(&operand);
+        let value = self.add_expr(ExprKind::Unary(Unary::Not, value), el.storage(), range);
+        Operand::value(value, TypeId::of(el), range)
+    }
+
+    /// An operand that must be a bit string; literals become one of the type that is wanted.
+    fn bit_operand(&mut self, operand: Operand, want: Option<TypeId>, op: &str) -> Operand {
+        if operand.ty == TypeId::UNTYPED_INT {
+            let wanted = want.and_then(|ty| self.an.types.elementary(ty));
+            let el = wanted.filter(|el| el.is_bits()).unwrap_or_else(|| {
+                let value = operand.as_const().and_then(Const::as_int).unwrap_or(0);
+                let fits = |el: &&El| el.is_bits() && el.range().1 >= value;
+                *El::ALL.iter().find(fits).unwrap_or(&El::Lword)
+            });
+            return match self.constant_to(&operand, TypeId::of(el)) {
+                Some(value) => Operand::constant(value, TypeId::of(el), operand.range),
+                None => Operand::error(operand.range),
+            };
+        }
+        if self
+            .an
+            .types
+            .elementary(operand.ty)
+            .is_some_and(El::is_bits)
+            || operand.is_error()
+        {
+            return operand;
+        }
+        let name = self.type_name(operand.ty);
+        let message = format!("{op} takes BOOL or a bit string, not {name}");
+        self.error(Message::E2027, operand.range, message)
+    }
+
+    pub(super) fn binary(
+        &mut self,
+        op: BinaryOp,
+        left: st::Id<st::Expr>,
+        right: st::Id<st::Expr>,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        // What a comparison is used for says nothing about its operands.
+        let inner = if is_comparison(op) { None } else { want };
+        if matches!(op, BinaryOp::AndThen | BinaryOp::OrElse) {
+            return self.short_circuit(op, left, right, range);
+        }
+        let left = self.expr(left, inner);
+        let right = self.expr(right, inner);
+        self.binary_on(op, left, right, range, want)
+    }
+
+    /// An operator on operands that were looked at.
+    pub(super) fn binary_on(
+        &mut self,
+        op: BinaryOp,
+        left: Operand,
+        right: Operand,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        if left.is_error() || right.is_error() {
+            return if is_comparison(op) {
+                Operand {
+                    ty: TypeId::ERROR,
+                    ..Operand::error(range)
+                }
+            } else {
+                Operand::error(range)
+            };
+        }
+        match op {
+            BinaryOp::Equal
+            | BinaryOp::NotEqual
+            | BinaryOp::Less
+            | BinaryOp::LessEqual
+            | BinaryOp::Greater
+            | BinaryOp::GreaterEqual => self.compare(op, left, right, range),
+            BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
+                self.bitwise(op, left, right, range, want)
+            }
+            BinaryOp::Add
+            | BinaryOp::Subtract
+            | BinaryOp::Multiply
+            | BinaryOp::Divide
+            | BinaryOp::Modulo => self.arithmetic(op, left, right, range, want),
+            BinaryOp::Power => self.power(left, right, range, want),
+            BinaryOp::AndThen | BinaryOp::OrElse => unreachable!("handled before"),
+        }
+    }
+
+    fn short_circuit(
+        &mut self,
+        op: BinaryOp,
+        left: st::Id<st::Expr>,
+        right: st::Id<st::Expr>,
+        range: TextRange,
+    ) -> Operand {
+        let left = self.scalar_expr(left, TypeId::BOOL);
+        let outer = std::mem::take(&mut self.pending);
+        let right = self.scalar_expr(right, TypeId::BOOL);
+        let inner = std::mem::replace(&mut self.pending, outer);
+        let bool_storage = crate::hir::Elementary::Bool;
+        let right = if inner.is_empty() {
+            right
+        } else {
+            self.add_expr(ExprKind::After(inner, right), bool_storage, range)
+        };
+        let known = self.add_const(u64::from(op == BinaryOp::OrElse), bool_storage, range);
+        let kind = if op == BinaryOp::AndThen {
+            ExprKind::Choose(left, right, known)
+        } else {
+            ExprKind::Choose(left, known, right)
+        };
+        let value = self.add_expr(kind, bool_storage, range);
+        Operand::value(value, TypeId::BOOL, range)
+    }
+
+    fn bitwise(
+        &mut self,
+        op: BinaryOp,
+        left: Operand,
+        right: Operand,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        let hint = |other: &Operand| {
+            if other.ty == TypeId::UNTYPED_INT {
+                want
+            } else {
+                Some(other.ty)
+            }
+        };
+        let (left_hint, right_hint) = (hint(&right), hint(&left));
+        let left = self.bit_operand(left, left_hint, op.as_str());
+        let right = self.bit_operand(right, right_hint, op.as_str());
+        if left.is_error() || right.is_error() {
+            return Operand::error(range);
+        }
+        let elementary = |ty| self.an.types.elementary(ty).expect("a bit string");
+        let (a, b) = (elementary(left.ty), elementary(right.ty));
+        let el = a.common(b).expect("bit strings widen to one another");
+        let ty = TypeId::of(el);
+        if let (Some(Const::Int(a)), Some(Const::Int(b))) = (left.as_const(), right.as_const()) {
+            let value = match op {
+                BinaryOp::And => a & b,
+                BinaryOp::Or => a | b,
+                _ => a ^ b,
+            };
+            return Operand::constant(Const::Int(value), ty, range);
+        }
+        let op = match op {
+            BinaryOp::And => Op::And,
+            BinaryOp::Or => Op::Or,
+            _ => Op::Xor,
+        };
+        let (left, right) = (self.to_scalar(&left, ty), self.to_scalar(&right, ty));
+        let value = self.add_expr(ExprKind::Binary(op, left, right), el.storage(), range);
+        Operand::value(value, ty, range)
+    }
+
+    fn arithmetic(
+        &mut self,
+        op: BinaryOp,
+        left: Operand,
+        right: Operand,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        if let Some(result) = self.time_arithmetic(op, &left, &right, range) {
+            return result;
+        }
+        let Some(ty) = self.number_type(op, &left, &right, want, range) else {
+            return Operand::error(range);
+        };
+        if left.as_const().is_some() && right.as_const().is_some() {
+            return self.fold_arithmetic(op, &left, &right, ty, range);
+        }
+        let el = self
+            .an
+            .types
+            .elementary(ty)
+            .expect("computed operands have a type");
+        if self.divides_by_zero(op, el, &right) {
+            return self.error(Message::E2028, right.range, "division by zero");
+        }
+        let hir_op = match op {
+            BinaryOp::Add => Op::Add,
+            BinaryOp::Subtract => Op::Subtract,
+            BinaryOp::Multiply => Op::Multiply,
+            BinaryOp::Modulo => Op::Modulo,
+            _ if el.is_real() || right.as_const().is_some() => Op::DivideUnchecked,
+            _ => Op::Divide,
+        };
+        let (left, right) = (self.to_scalar(&left, ty), self.to_scalar(&right, ty));
+        let value = self.add_expr(ExprKind::Binary(hir_op, left, right), el.storage(), range);
+        Operand::value(value, ty, range)
+    }
+
+    fn divides_by_zero(&self, op: BinaryOp, el: El, right: &Operand) -> bool {
+        op == BinaryOp::Divide && !el.is_real() && matches!(right.as_const(), Some(Const::Int(0)))
+    }
+
+    /// The type in which two numbers are computed with; a message if there is none.
+    fn number_type(
+        &mut self,
+        op: BinaryOp,
+        left: &Operand,
+        right: &Operand,
+        want: Option<TypeId>,
+        range: TextRange,
+    ) -> Option<TypeId> {
+        for operand in [left, right] {
+            let untyped = matches!(operand.ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL);
+            let el = self.an.types.elementary(operand.ty);
+            let fits = |el: El| el.is_int() || (el.is_real() && op != BinaryOp::Modulo);
+            if !untyped && !el.is_some_and(fits) {
+                let name = self.type_name(operand.ty);
+                let message = match op {
+                    BinaryOp::Modulo => format!("MOD takes integers, not {name}"),
+                    _ => format!("`{}` takes numbers, not {name}", op.as_str()),
+                };
+                self.error(Message::E2027, operand.range, message);
+                return None;
+            }
+        }
+        let ty = self.common_number(left, right, want);
+        if ty.is_none() {
+            self.no_common_type(op, left, right, range);
+        }
+        ty
+    }
+
+    fn no_common_type(&mut self, op: BinaryOp, left: &Operand, right: &Operand, range: TextRange) {
+        let (a, b) = (self.type_name(left.ty), self.type_name(right.ty));
+        let message = format!(
+            "`{}` has operands of types that no type holds: {a} and {b}",
+            op.as_str()
+        );
+        let diagnostic = Diagnostic::new(Message::E2029, self.span(range), message)
+            .also(self.span(left.range), format!("this is {a}"))
+            .also(self.span(right.range), format!("this is {b}"))
+            .note("convert one of them");
+        self.report(diagnostic);
+    }
+
+    /// The type of two operands together: literals take that of the other, or the wanted one.
+    pub(super) fn common_number(
+        &mut self,
+        left: &Operand,
+        right: &Operand,
+        want: Option<TypeId>,
+    ) -> Option<TypeId> {
+        let untyped = |ty| matches!(ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL);
+        match (untyped(left.ty), untyped(right.ty)) {
+            (true, true) => {
+                let fraction = left.ty == TypeId::UNTYPED_REAL || right.ty == TypeId::UNTYPED_REAL;
+                let wanted = want.filter(|ty| {
+                    let el = self.an.types.elementary(*ty);
+                    el.is_some_and(|el| if fraction { el.is_real() } else { el.is_num() })
+                });
+                let own = if fraction {
+                    TypeId::UNTYPED_REAL
+                } else {
+                    TypeId::UNTYPED_INT
+                };
+                let wanted = wanted.and_then(|ty| self.an.types.elementary(ty));
+                Some(wanted.map_or(own, TypeId::of))
+            }
+            (true, false) => Some(self.literal_beside(left, right)),
+            (false, true) => Some(self.literal_beside(right, left)),
+            (false, false) => {
+                let a = self.an.types.elementary(left.ty)?;
+                let b = self.an.types.elementary(right.ty)?;
+                a.common(b).map(TypeId::of)
+            }
+        }
+    }
+
+    /// The type of a literal and a typed operand: that of the operand, but a fraction beside an
+    /// integer stays what it is, so that the mistake is reported at the literal.
+    fn literal_beside(&self, _literal: &Operand, typed: &Operand) -> TypeId {
+        let el = self.an.types.elementary(typed.ty);
+        el.map_or(typed.ty, TypeId::of)
+    }
+
+    fn fold_arithmetic(
+        &mut self,
+        op: BinaryOp,
+        left: &Operand,
+        right: &Operand,
+        ty: TypeId,
+        range: TextRange,
+    ) -> Operand {
+        let real =
+            ty == TypeId::UNTYPED_REAL || self.an.types.elementary(ty).is_some_and(El::is_real);
+        let operands = if matches!(ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL) {
+            left.as_const().cloned().zip(right.as_const().cloned())
+        } else {
+            self.constant_to(left, ty).zip(self.constant_to(right, ty))
+        };
+        let Some((a, b)) = operands else {
+            return Operand::error(range);
+        };
+        let value = if real {
+            let el = self.an.types.elementary(ty).unwrap_or(El::Lreal);
+            Some(Const::Real(round_to(
+                el,
+                fold_real(op, as_real(&a), as_real(&b)),
+            )))
+        } else {
+            match (a, b) {
+                (Const::Int(_), Const::Int(0)) if op == BinaryOp::Divide => {
+                    return self.error(Message::E2028, right.range, "division by zero");
+                }
+                (Const::Int(a), Const::Int(b)) => fold_int(op, a, b).map(Const::Int),
+                _ => None,
+            }
+        };
+        match value {
+            Some(value) => self.folded(value, ty, range),
+            None => self.error(Message::E2005, range, "the result does not fit 128 bits"),
+        }
+    }
+
+    /// A folded constant, which must fit its type.
+    pub(super) fn folded(&mut self, value: Const, ty: TypeId, range: TextRange) -> Operand {
+        if let (Const::Int(number), Some(el)) = (&value, self.an.types.elementary(ty))
+            && !el.is_real()
+        {
+            let (low, high) = el.range();
+            if !(low..=high).contains(number) {
+                let message = format!(
+                    "the result {number} does not fit {} ({low} to {high})",
+                    el.name()
+                );
+                return self.error(Message::E2005, range, message);
+            }
+            return Operand::constant(value, TypeId::of(el), range);
+        }
+        Operand::constant(value, ty, range)
+    }
+
+    fn compare(
+        &mut self,
+        op: BinaryOp,
+        left: Operand,
+        right: Operand,
+        range: TextRange,
+    ) -> Operand {
+        let hir_op = match op {
+            BinaryOp::Equal => CompareOp::Equal,
+            BinaryOp::NotEqual => CompareOp::NotEqual,
+            BinaryOp::Less => CompareOp::Less,
+            BinaryOp::LessEqual => CompareOp::LessEqual,
+            BinaryOp::Greater => CompareOp::Greater,
+            _ => CompareOp::GreaterEqual,
+        };
+        let Some(ty) = self.compared_type(op, &left, &right, range) else {
+            return Operand::error(range);
+        };
+        if let (Some(a), Some(b)) = (left.as_const(), right.as_const())
+            && let Some(value) = fold_compare(op, a, b)
+        {
+            return Operand::constant(Const::Int(i128::from(value)), TypeId::BOOL, range);
+        }
+        if let TypeKind::Text { .. } = self.an.types.base(ty) {
+            return self.compare_texts(hir_op, left, right, range);
+        }
+        let (left, right) = (self.to_scalar(&left, ty), self.to_scalar(&right, ty));
+        let value = self.add_expr(
+            ExprKind::Compare(hir_op, left, right),
+            crate::hir::Elementary::Bool,
+            range,
+        );
+        Operand::value(value, TypeId::BOOL, range)
+    }
+
+    /// The type in which two operands are compared; a message if there is none.
+    fn compared_type(
+        &mut self,
+        op: BinaryOp,
+        left: &Operand,
+        right: &Operand,
+        range: TextRange,
+    ) -> Option<TypeId> {
+        let (a, b) = (self.an.types.strip(left.ty), self.an.types.strip(right.ty));
+        let equality = matches!(op, BinaryOp::Equal | BinaryOp::NotEqual);
+        let types = &self.an.types;
+        let found = match (types.kind(a), types.kind(b)) {
+            (TypeKind::Enum(x), TypeKind::Enum(y)) if x == y && equality => Some(a),
+            (TypeKind::Reference(..) | TypeKind::Interface(_), TypeKind::Null) if equality => {
+                Some(a)
+            }
+            (TypeKind::Null, TypeKind::Reference(..) | TypeKind::Interface(_)) if equality => {
+                Some(b)
+            }
+            (TypeKind::Reference(_, x), TypeKind::Reference(_, y)) if x == y && equality => Some(a),
+            (TypeKind::Interface(_), TypeKind::Interface(_)) if equality => Some(a),
+            (TypeKind::Text { wide: x, .. }, TypeKind::Text { wide: y, .. }) if x == y => Some(a),
+            (TypeKind::Text { length: 1, .. }, TypeKind::Elementary(El::Char | El::Wchar)) => {
+                left.as_const().is_some().then_some(b)
+            }
+            (TypeKind::Elementary(El::Char | El::Wchar), TypeKind::Text { length: 1, .. }) => {
+                right.as_const().is_some().then_some(a)
+            }
+            _ => self.compared_elementary(left, right),
+        };
+        if found.is_none() {
+            self.no_common_type(op, left, right, range);
+        }
+        found
+    }
+
+    fn compared_elementary(&self, left: &Operand, right: &Operand) -> Option<TypeId> {
+        let untyped = |ty| matches!(ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL);
+        let types = &self.an.types;
+        match (untyped(left.ty), untyped(right.ty)) {
+            (true, true) => Some(TypeId::UNTYPED_REAL),
+            (true, false) => types.elementary(right.ty).map(TypeId::of),
+            (false, true) => types.elementary(left.ty).map(TypeId::of),
+            (false, false) => {
+                let (a, b) = (types.elementary(left.ty)?, types.elementary(right.ty)?);
+                a.common(b).map(TypeId::of)
+            }
+        }
+    }
+
+    /// Addition and the like on durations and points in time; `None` if neither operand is one.
+    fn time_arithmetic(
+        &mut self,
+        op: BinaryOp,
+        left: &Operand,
+        right: &Operand,
+        range: TextRange,
+    ) -> Option<Operand> {
+        let types = &self.an.types;
+        let (a, b) = (types.elementary(left.ty), types.elementary(right.ty));
+        let is_time = |el: Option<El>| el.is_some_and(|el| el.is_duration() || el.is_date());
+        if !is_time(a) && !is_time(b) {
+            return None;
+        }
+        let result = time_result(op, a, b);
+        let Some((result, wrap_day)) = result else {
+            let scaled = match op {
+                BinaryOp::Multiply if is_time(a) => Some((left, right)),
+                BinaryOp::Multiply => Some((right, left)),
+                BinaryOp::Divide => Some((left, right)),
+                _ => None,
+            };
+            if let Some((time, factor)) = scaled
+                && self
+                    .an
+                    .types
+                    .elementary(time.ty)
+                    .is_some_and(El::is_duration)
+            {
+                return Some(self.scale_time(op, time, factor, range));
+            }
+            self.no_common_type(op, left, right, range);
+            return Some(Operand::error(range));
+        };
+        let ty = TypeId::of(result);
+        if let (Some(Const::Int(a)), Some(Const::Int(b))) = (left.as_const(), right.as_const()) {
+            let value = fold_int(op, *a, *b).expect("sums fit");
+            let day = 86_400_000_000_000;
+            let value = if wrap_day {
+                value.rem_euclid(day)
+            } else {
+                value
+            };
+            return Some(self.folded(Const::Int(value), ty, range));
+        }
+        let hir_op = if op == BinaryOp::Add {
+            Op::Add
+        } else {
+            Op::Subtract
+        };
+        let storage = result.storage();
+        let (a, b) = (self.raw(left), self.raw(right));
+        let mut value = self.add_expr(ExprKind::Binary(hir_op, a, b), storage, range);
+        if wrap_day {
+            value = self.wrap_day(value, range);
+        }
+        Some(Operand::value(value, ty, range))
+    }
+
+    /// A time of day brought back between midnight and midnight.
+    fn wrap_day(&mut self, value: ExprId, range: TextRange) -> ExprId {
+        let storage = El::Tod.storage();
+        let day = self.add_const(86_400_000_000_000, storage, range);
+        let rest = self.add_expr(ExprKind::Binary(Op::Modulo, value, day), storage, range);
+        let sum = self.add_expr(ExprKind::Binary(Op::Add, rest, day), storage, range);
+        self.add_expr(ExprKind::Binary(Op::Modulo, sum, day), storage, range)
+    }
+
+    /// A duration times or divided by a number.
+    fn scale_time(
+        &mut self,
+        op: BinaryOp,
+        time: &Operand,
+        factor: &Operand,
+        range: TextRange,
+    ) -> Operand {
+        let el = self.an.types.elementary(time.ty).expect("a duration");
+        let factor_el = match self.an.types.elementary(factor.ty) {
+            Some(el) if el.is_num() => el,
+            None if factor.ty == TypeId::UNTYPED_INT => El::Lint,
+            None if factor.ty == TypeId::UNTYPED_REAL => El::Lreal,
+            Some(_) | None => {
+                self.no_common_type(op, time, factor, range);
+                return Operand::error(range);
+            }
+        };
+        let storage = el.storage();
+        let (time_value, ty) = (self.raw(time), TypeId::of(el));
+        if factor_el.is_real() {
+            let real = El::Lreal;
+            let wide = self.convert_value(time_value, real, range);
+            let factor = self.to_scalar(factor, TypeId::of(factor_el));
+            let factor = self.convert_value(factor, real, range);
+            let hir_op = if op == BinaryOp::Multiply {
+                Op::Multiply
+            } else {
+                Op::DivideUnchecked
+            };
+            let kind = ExprKind::Binary(hir_op, wide, factor);
+            let value = self.add_expr(kind, real.storage(), range);
+            let value = self.convert_value(value, el, range);
+            return Operand::value(value, ty, range);
+        }
+        if self.divides_by_zero(op, factor_el, factor) {
+            return self.error(Message::E2028, factor.range, "division by zero");
+        }
+        let constant = factor.as_const().is_some();
+        let factor = self.to_scalar(factor, TypeId::of(factor_el));
+        let factor = self.convert_value(factor, el, range);
+        let hir_op = match op {
+            BinaryOp::Multiply => Op::Multiply,
+            _ if constant => Op::DivideUnchecked,
+            _ => Op::Divide,
+        };
+        let kind = ExprKind::Binary(hir_op, time_value, factor);
+        let value = self.add_expr(kind, storage, range);
+        Operand::value(value, ty, range)
+    }
+
+    /// A number by value in another storage.
+    pub(super) fn convert_value(&mut self, value: ExprId, to: El, range: TextRange) -> ExprId {
+        if self.code.expr(value).ty == to.storage() {
+            return value;
+        }
+        let kind = ExprKind::Convert(Conversion::Value, value);
+        self.add_expr(kind, to.storage(), range)
+    }
+
+    /// `left ** right`.
+    fn power(
+        &mut self,
+        left: Operand,
+        right: Operand,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        self.library_call("EXPT", vec![left, right], range, want)
+    }
+
+    fn compare_texts(
+        &mut self,
+        op: CompareOp,
+        left: Operand,
+        right: Operand,
+        range: TextRange,
+    ) -> Operand {
+        let order = self.library_call("__COMPARE", vec![left, right], range, None);
+        if order.is_error() {
+            return order;
+        }
+        let value = self.raw(&order);
+        let storage = self.code.expr(value).ty;
+        let zero = self.add_const(0, storage, range);
+        let kind = ExprKind::Compare(op, value, zero);
+        let value = self.add_expr(kind, crate::hir::Elementary::Bool, range);
+        Operand::value(value, TypeId::BOOL, range)
+    }
+
+    /// Whether an operand is a place of an instance.
+    pub(super) fn is_instance(&self, operand: &Operand) -> bool {
+        matches!(operand.kind, OperandKind::Place(_))
+            && matches!(self.an.types.base(operand.ty), TypeKind::Instance(_))
+    }
+}
+
+fn is_comparison(op: BinaryOp) -> bool {
+    matches!(
+        op,
+        BinaryOp::Equal
+            | BinaryOp::NotEqual
+            | BinaryOp::Less
+            | BinaryOp::LessEqual
+            | BinaryOp::Greater
+            | BinaryOp::GreaterEqual
+    )
+}
+
+/// What comes out of a sum or difference of times, and whether it stays within a day.
+fn time_result(op: BinaryOp, a: Option<El>, b: Option<El>) -> Option<(El, bool)> {
+    let (a, b) = (a?, b?);
+    let long = a.is_long_time();
+    // Short and long families do not mix, but a long operand may have a short duration beside it.
+    if long != b.is_long_time() && !(b == El::Time || a == El::Time) {
+        return None;
+    }
+    let duration = if long || (b.is_long_time() && a.is_duration()) {
+        El::Ltime
+    } else {
+        El::Time
+    };
+    match (op, a.family(), b.family()) {
+        (BinaryOp::Add | BinaryOp::Subtract, Family::Duration, Family::Duration) => {
+            Some((duration, false))
+        }
+        (BinaryOp::Add | BinaryOp::Subtract, Family::TimeOfDay, Family::Duration)
+            if long || b == El::Time =>
+        {
+            Some((a, true))
+        }
+        (BinaryOp::Add | BinaryOp::Subtract, Family::DateTime, Family::Duration)
+            if long || b == El::Time =>
+        {
+            Some((a, false))
+        }
+        (BinaryOp::Subtract, Family::Date, Family::Date)
+        | (BinaryOp::Subtract, Family::TimeOfDay, Family::TimeOfDay)
+        | (BinaryOp::Subtract, Family::DateTime, Family::DateTime)
+            if a == b =>
+        {
+            Some((duration, false))
+        }
+        _ => None,
+    }
+}
+
+fn as_real(value: &Const) -> f64 {
+    match value {
+        Const::Int(number) => *number as f64,
+        Const::Real(number) | Const::Literal(_, number) => *number,
+        Const::Text(_) | Const::Null => 0.0,
+    }
+}
+
+fn fold_real(op: BinaryOp, a: f64, b: f64) -> f64 {
+    match op {
+        BinaryOp::Add => a + b,
+        BinaryOp::Subtract => a - b,
+        BinaryOp::Multiply => a * b,
+        _ => a / b,
+    }
+}
+
+fn fold_int(op: BinaryOp, a: i128, b: i128) -> Option<i128> {
+    match op {
+        BinaryOp::Add => a.checked_add(b),
+        BinaryOp::Subtract => a.checked_sub(b),
+        BinaryOp::Multiply => a.checked_mul(b),
+        BinaryOp::Divide => a.checked_div(b),
+        // MOD by 0 is 0 by definition.
+        _ if b == 0 => Some(0),
+        _ => a.checked_rem(b),
+    }
+}
+
+fn fold_compare(op: BinaryOp, a: &Const, b: &Const) -> Option<bool> {
+    use std::cmp::Ordering;
+    let order = match (a, b) {
+        (Const::Int(a), Const::Int(b)) => Some(a.cmp(b)),
+        (Const::Text(a), Const::Text(b)) => Some(a.cmp(b)),
+        (Const::Null, Const::Null) => Some(Ordering::Equal),
+        (Const::Text(_) | Const::Null, _) | (_, Const::Text(_) | Const::Null) => return None,
+        (a, b) => as_real(a).partial_cmp(&as_real(b)),
+    };
+    Some(match op {
+        BinaryOp::Equal => order == Some(Ordering::Equal),
+        BinaryOp::NotEqual => order != Some(Ordering::Equal),
+        BinaryOp::Less => order == Some(Ordering::Less),
+        BinaryOp::LessEqual => matches!(order, Some(Ordering::Less | Ordering::Equal)),
+        BinaryOp::Greater => order == Some(Ordering::Greater),
+        _ => matches!(order, Some(Ordering::Greater | Ordering::Equal)),
+    })
+}

@@ -1,0 +1,167 @@
+//! Collects what units declare: namespaces, types, units with bodies, globals. Nothing is resolved
+//! yet, so the order of declarations does not matter.
+
+use super::analysis::{Analysis, Resolution, TypeDecl, UnitRef};
+use super::signature::{Bindings, Def, NamespaceId, Part, Pou, PouId, State, TypeDeclId, UnitId};
+use iecc_ast::Symbol;
+use iecc_ast::st::{self, File, Item, Member, ScopeId, UnitKind};
+use iecc_diag::{Code, Diagnostic};
+use iecc_source::Span;
+use rustc_hash::FxHashMap;
+
+impl<'a> Analysis<'a> {
+    /// Declares everything of a file in a namespace.
+    pub(crate) fn declare_file(&mut self, file: &'a File, root: NamespaceId) {
+        let mut scopes = vec![root; file.scopes.len()];
+        for (index, scope) in file.scopes.iter().enumerate().skip(1) {
+            let parent = scope
+                .parent
+                .map_or(root, |parent| scopes[parent.0 as usize]);
+            scopes[index] = self.namespace(parent, &scope.name, scope.span);
+        }
+        self.declare_scope(file, ScopeId::FILE, &scopes);
+    }
+
+    /// Recursion is bounded by the depth of namespaces.
+    fn declare_scope(&mut self, file: &'a File, scope: ScopeId, namespaces: &[NamespaceId]) {
+        for item in &file.scopes[scope.0 as usize].items {
+            match *item {
+                Item::Unit(unit) => {
+                    let namespace = namespaces[scope.0 as usize];
+                    self.declare_unit(&file.units[unit as usize], namespace);
+                }
+                Item::Scope(inner) => self.declare_scope(file, inner, namespaces),
+            }
+        }
+    }
+
+    /// The namespace with a path below another, opened again or new.
+    fn namespace(&mut self, parent: NamespaceId, path: &[st::Ident], span: Span) -> NamespaceId {
+        let mut at = parent;
+        for part in path {
+            let known = self.lookup_in(at, part.name).first().copied();
+            at = match known {
+                Some(Def::Namespace(id)) => id,
+                Some(_) | None => {
+                    let id = NamespaceId(self.namespaces.len() as u32);
+                    self.namespaces.push(super::analysis::Namespace {
+                        parent: Some(at),
+                        ..Default::default()
+                    });
+                    self.define(at, part.name, Def::Namespace(id), span);
+                    id
+                }
+            };
+        }
+        at
+    }
+
+    fn declare_unit(&mut self, unit: &'a st::Unit, namespace: NamespaceId) {
+        let id = UnitId(self.units.len() as u32);
+        self.units.push(UnitRef { unit, namespace });
+        match &unit.kind {
+            UnitKind::Types { types, .. } => {
+                for decl in &unit.arena[*types] {
+                    let def = Def::Type(TypeDeclId(self.type_decls.len() as u32));
+                    self.type_decls.push(TypeDecl {
+                        unit: id,
+                        decl: *decl,
+                        namespace,
+                        state: Resolution::Untouched,
+                    });
+                    self.define(namespace, decl.name.name, def, unit.span(decl.name.range));
+                }
+            }
+            UnitKind::Pou(pou) => self.declare_pou(id, unit, pou, namespace),
+            UnitKind::Configuration(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => {}
+        }
+    }
+
+    fn declare_pou(
+        &mut self,
+        id: UnitId,
+        unit: &'a st::Unit,
+        pou: &'a st::Pou,
+        namespace: NamespaceId,
+    ) {
+        let span = unit.span(pou.name.range);
+        let whole = self.add_pou(Pou {
+            name: pou.name.name,
+            kind: pou.kind,
+            unit: id,
+            part: Part::Whole,
+            owner: None,
+            namespace,
+            span,
+            result: None,
+            vars: Vec::new(),
+            by_name: FxHashMap::default(),
+            members: Vec::new(),
+            extends: Vec::new(),
+            implements: Vec::new(),
+            modifiers: unit.arena[pou.modifiers].iter().map(|m| m.kind).collect(),
+            bindings: Bindings::default(),
+            state: State::Declared,
+        });
+        self.define(namespace, pou.name.name, Def::Pou(whole), span);
+        for (index, member) in (0..).zip(&unit.arena[pou.members]) {
+            let (modifiers, part) = match member {
+                Member::Method(method) => (method.modifiers, Part::Member(index)),
+                Member::Action(_) => (st::List::EMPTY, Part::Member(index)),
+                // Properties are declared when their accessors are.
+                Member::Property(property) => (property.modifiers, Part::Member(index)),
+            };
+            let name = member.name();
+            let mut made = self.pou(whole).clone();
+            made.name = name.name;
+            made.kind = st::PouKind::Function;
+            made.part = part;
+            made.owner = Some(whole);
+            made.span = unit.span(name.range);
+            made.modifiers = unit.arena[modifiers].iter().map(|m| m.kind).collect();
+            made.members = Vec::new();
+            let made = self.add_pou(made);
+            self.pous[whole.index()].members.push((name.name, made));
+        }
+    }
+
+    pub(crate) fn add_pou(&mut self, pou: Pou) -> PouId {
+        self.pous.push(pou);
+        PouId(self.pous.len() as u32 - 1)
+    }
+
+    /// Gives a name a meaning, which it may have once; library functions may be overloaded.
+    pub(crate) fn define(&mut self, namespace: NamespaceId, name: Symbol, def: Def, span: Span) {
+        let defs = &mut self.namespaces[namespace.index()].defs;
+        let defs = defs.entry(name).or_default();
+        if let Some(&first) = defs.first()
+            && namespace != NamespaceId::LIBRARY
+        {
+            let other = self.def_span(first);
+            let message = format!("`{}` is declared twice", self.text(name));
+            let mut diagnostic = Diagnostic::new(Code::E1003, span, message);
+            if let Some(other) = other {
+                diagnostic = diagnostic.also(other, "declared here first");
+            }
+            self.report(diagnostic);
+            return;
+        }
+        defs.push(def);
+    }
+
+    fn def_span(&self, def: Def) -> Option<Span> {
+        match def {
+            Def::Type(id) => {
+                let decl = self.type_decl(id);
+                Some(self.span(decl.unit, decl.decl.name.range))
+            }
+            Def::Pou(id) => Some(self.pou(id).span),
+            Def::Global(id) => Some(self.global(id).span),
+            Def::Namespace(_) => None,
+        }
+    }
+}

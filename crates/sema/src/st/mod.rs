@@ -1,0 +1,212 @@
+//! Structured Text: from the trees of all files to a typed program.
+//!
+//! 1. `declare` collects names: units, types, namespaces. Nothing is resolved, so order is free.
+//! 2. `resolve` and `signatures` give types to declarations, on demand; `initial` gives values.
+//! 3. `body` checks every body and writes it down as [`hir::code`](crate::hir::code).
+//! 4. `program` makes instances, tasks, inputs and outputs.
+//!
+//! Every mistake of every file is reported. What is wrong once counts as of the error type from
+//! there on, which goes with everything: a mistake gives one message. Library units are checked
+//! only where they are used.
+
+mod analysis;
+mod body;
+pub mod constant;
+mod declare;
+pub mod elementary;
+mod initial;
+mod program;
+mod resolve;
+pub mod signature;
+mod signatures;
+mod storage;
+pub mod types;
+
+pub use constant::Const;
+pub use elementary::{El, Family};
+
+use crate::hir;
+use analysis::{Analysis, Namespace, Words};
+use iecc_ast::Names;
+use iecc_ast::st::{File, PouKind};
+use iecc_diag::Diagnostics;
+use resolve::DEFAULT_TEXT;
+use rustc_hash::FxHashMap;
+use signature::{NamespaceId, PouId};
+use types::{TypeId, TypeKind, Types};
+
+/// Choices that the source does not make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// Whether the conveniences of CODESYS and TwinCAT are allowed.
+    pub codesys: bool,
+}
+
+/// Gives names that mean something without being words of the language their symbols. To be
+/// called before [`analyze`], which cannot add names.
+pub fn intern_words(names: &mut Names) {
+    for word in WORDS {
+        names.reserve(word);
+    }
+    for el in El::ALL {
+        names.reserve(el.name());
+        names.reserve(el.short_name());
+    }
+    for word in ["STRING", "WSTRING"] {
+        names.reserve(word);
+    }
+}
+
+const WORDS: [&str; 5] = ["EN", "ENO", "INTERVAL", "SINGLE", "PRIORITY"];
+
+/// Decides what the program of some files means. The library's files are trees like others; what
+/// of them is not used is not looked at. The program means nothing if there are errors.
+pub fn analyze(
+    library: &[File],
+    files: &[File],
+    names: &Names,
+    options: Options,
+    diagnostics: &mut Diagnostics,
+) -> hir::Program {
+    let mut analysis = Analysis::new(names, options);
+    for file in library {
+        analysis.declare_file(file, NamespaceId::LIBRARY);
+    }
+    analysis.first_user_unit = analysis.units.len() as u32;
+    for file in files {
+        analysis.declare_file(file, NamespaceId::GLOBAL);
+    }
+    analysis.index_units();
+    analysis.resolve_all();
+    analysis.assemble();
+    let program = analysis.finish();
+    diagnostics.append(program.1);
+    program.0
+}
+
+impl<'a> Analysis<'a> {
+    fn new(names: &'a Names, options: Options) -> Self {
+        let word = |text| names.find(text).expect("words are interned first");
+        let mut types = Types::new();
+        let mut elementary_names = FxHashMap::default();
+        for el in El::ALL {
+            for name in [el.name(), el.short_name()] {
+                elementary_names.insert(word(name), TypeId::of(*el));
+            }
+        }
+        for (name, wide) in [("STRING", false), ("WSTRING", true)] {
+            let ty = types.intern(TypeKind::Text {
+                wide,
+                length: DEFAULT_TEXT,
+            });
+            elementary_names.insert(word(name), ty);
+        }
+        let global = Namespace::default();
+        Self {
+            names,
+            words: Words {
+                en: word("EN"),
+                eno: word("ENO"),
+                interval: word("INTERVAL"),
+                single: word("SINGLE"),
+                priority: word("PRIORITY"),
+            },
+            options,
+            units: Vec::new(),
+            namespaces: vec![global, Namespace::default()],
+            types,
+            type_decls: Vec::new(),
+            pous: Vec::new(),
+            globals: Vec::new(),
+            enumerators: FxHashMap::default(),
+            elementary_names,
+            pou_of_unit: FxHashMap::default(),
+            storage: storage::StorageTypes::default(),
+            hir: hir::Program::empty(),
+            instances: FxHashMap::default(),
+            wanted: Vec::new(),
+            synthetics: Vec::new(),
+            unit_names: FxHashMap::default(),
+            hir_ids: FxHashMap::default(),
+            found: Diagnostics::new(),
+            depth: 0,
+            first_user_unit: 0,
+        }
+    }
+
+    fn index_units(&mut self) {
+        for (index, pou) in (0..).zip(&self.pous) {
+            if pou.owner.is_none() {
+                self.pou_of_unit.insert(pou.unit, PouId(index));
+            }
+        }
+    }
+
+    /// Types, signatures and bodies of the user, used or not.
+    fn resolve_all(&mut self) {
+        for index in 0..self.type_decls.len() as u32 {
+            self.declared_type(signature::TypeDeclId(index));
+        }
+        let units = 0..self.pous.len() as u32;
+        let user: Vec<PouId> = units
+            .map(PouId)
+            .filter(|id| !self.is_library(self.pou(*id).unit))
+            .collect();
+        for &id in &user {
+            self.complete(id);
+        }
+        for &id in &user {
+            if self.pou(id).kind != PouKind::Interface {
+                self.want(id);
+            }
+        }
+    }
+
+    /// Checks bodies until no new ones come up.
+    fn finish(mut self) -> (hir::Program, Diagnostics) {
+        let mut next = 0;
+        while next < self.wanted.len() {
+            let id = self.wanted[next];
+            let made = match self
+                .synthetics
+                .iter()
+                .position(|(at, _)| at.index() == next)
+            {
+                Some(index) => self.synthetics.swap_remove(index).1,
+                None => self.checked_pou(id),
+            };
+            self.hir.pous.push(made);
+            next += 1;
+        }
+        (self.hir, self.found)
+    }
+
+    fn checked_pou(&mut self, id: PouId) -> hir::Pou {
+        self.complete(id);
+        let code = self.body(id);
+        let pou = self.pou(id);
+        let (span, own) = (pou.span, self.text(pou.name));
+        let name = match pou.owner {
+            Some(owner) => format!("{}.{own}", self.text(self.pou(owner).name)),
+            None => own.to_owned(),
+        };
+        let name = self.unique_unit_name(name);
+        hir::Pou {
+            name,
+            parameters: Vec::new(),
+            results: Vec::new(),
+            body: hir::Body::Text(Box::new(code)),
+            span,
+        }
+    }
+
+    /// Instances of generic units and units of different namespaces may have one name.
+    fn unique_unit_name(&mut self, name: String) -> String {
+        let number = self.unit_names.entry(name.clone()).or_insert(0);
+        *number += 1;
+        match *number {
+            1 => name,
+            number => format!("{name}'{number}"),
+        }
+    }
+}

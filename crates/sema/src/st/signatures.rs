@@ -1,0 +1,422 @@
+//! Resolves signatures: the variables of a unit, where they live, and how it is called.
+
+use super::analysis::{Analysis, MAX_RESOLUTION_DEPTH};
+use super::resolve::TypeScope;
+use super::signature::{Def, Initial, Part, PouId, State, Storage, Var};
+use super::types::{TypeId, TypeKind};
+use iecc_ast::st::{self, Declarations, Member, ModifierKind, PouKind, SectionKind, UnitKind};
+use iecc_diag::{Code, Diagnostic};
+
+/// How a unit is called. Positions are those of its variables.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct CallShape {
+    /// Whether the first reference is the instance.
+    pub instance: bool,
+    /// Passed by reference, in order; then the result, if it is no number.
+    pub refs: Vec<usize>,
+    /// Whether the result is the last reference.
+    pub result_by_ref: bool,
+    /// Passed by value.
+    pub params: Vec<usize>,
+    /// Given back: the result first, if it is a number.
+    pub results: Vec<usize>,
+    /// Whether the first result is that of the function.
+    pub result_by_value: bool,
+}
+
+/// The interface of a unit as it is written.
+#[derive(Clone, Copy)]
+struct WrittenPou {
+    sections: st::List<st::VarSection>,
+    result: Option<st::Id<st::TypeSpec>>,
+    kind: PouKind,
+}
+
+impl Analysis<'_> {
+    /// Completes the signature of a unit. An instance that contains itself is reported where it is
+    /// declared.
+    pub(crate) fn complete(&mut self, id: PouId) {
+        if self.pou(id).state != State::Declared {
+            return;
+        }
+        self.pous[id.index()].state = State::InProgress;
+        if let Some(owner) = self.pou(id).owner {
+            self.complete(owner);
+        }
+        if let Some(written) = self.written_pou(id) {
+            let scope = self.pou_scope(id);
+            let scope = scope.as_scope();
+            let result = written.result.map(|ty| self.type_of_spec(scope, ty));
+            self.pous[id.index()].result = result;
+            self.heritage(id);
+            let sections = &self.unit(scope.unit).arena[written.sections];
+            for section in sections {
+                self.section(id, written.kind, section);
+            }
+        }
+        self.place_vars(id);
+        self.pous[id.index()].state = State::Done;
+    }
+
+    /// Where the types of a unit are looked up.
+    pub(crate) fn pou_scope(&self, id: PouId) -> OwnedScope {
+        let pou = self.pou(id);
+        OwnedScope {
+            unit: pou.unit,
+            namespace: pou.namespace,
+            bindings: pou.bindings.clone(),
+            pou: id,
+        }
+    }
+
+    fn written_pou(&self, id: PouId) -> Option<WrittenPou> {
+        let pou = self.pou(id);
+        let unit = self.unit(pou.unit);
+        let UnitKind::Pou(whole) = &unit.kind else {
+            return None;
+        };
+        let member = |index: u32| &unit.arena[whole.members][index as usize];
+        let function = PouKind::Function;
+        match pou.part {
+            Part::Whole => Some(WrittenPou {
+                sections: whole.sections,
+                result: whole.result,
+                kind: whole.kind,
+            }),
+            Part::Member(index) => match member(index) {
+                Member::Method(method) => Some(WrittenPou {
+                    sections: method.sections,
+                    result: method.result,
+                    kind: function,
+                }),
+                Member::Action(_) | Member::Property(_) => None,
+            },
+            Part::Getter(index) | Part::Setter(index) => match member(index) {
+                Member::Property(property) => {
+                    let (accessor, result) = match pou.part {
+                        Part::Getter(_) => (property.get, Some(property.ty)),
+                        _ => (property.set, None),
+                    };
+                    accessor.map(|accessor| WrittenPou {
+                        sections: accessor.sections,
+                        result,
+                        kind: function,
+                    })
+                }
+                Member::Method(_) | Member::Action(_) => None,
+            },
+        }
+    }
+
+    /// EXTENDS and IMPLEMENTS.
+    fn heritage(&mut self, id: PouId) {
+        let pou = self.pou(id);
+        if pou.part != Part::Whole {
+            return;
+        }
+        let (unit_id, namespace) = (pou.unit, pou.namespace);
+        let unit = self.unit(unit_id);
+        let UnitKind::Pou(written) = &unit.kind else {
+            return;
+        };
+        for (paths, extends) in [(written.extends, true), (written.implements, false)] {
+            for &path in &unit.arena[paths] {
+                let def = self.path(unit_id, namespace, path);
+                let def = def.and_then(|defs| defs.first().copied());
+                let span = unit.span(unit.arena[path].range);
+                let Some(Def::Pou(base)) = def else {
+                    self.error(Code::E1010, span, "this is no class, block or interface");
+                    continue;
+                };
+                if self.pou(base).state == State::InProgress {
+                    let name = self.text(self.pou(base).name);
+                    self.error(Code::E2009, span, format!("`{name}` extends itself"));
+                    continue;
+                }
+                self.complete(base);
+                let pou = &mut self.pous[id.index()];
+                if extends {
+                    pou.extends.push(base);
+                } else {
+                    pou.implements.push(base);
+                }
+            }
+        }
+    }
+
+    fn section(&mut self, id: PouId, kind: PouKind, section: &st::VarSection) {
+        let unit_id = self.pou(id).unit;
+        let unit = self.unit(unit_id);
+        let modifiers = &unit.arena[section.modifiers];
+        let constant = modifiers.iter().any(|m| m.kind == ModifierKind::Constant);
+        let access = modifiers.iter().map(|m| m.kind).find(|kind| {
+            matches!(
+                kind,
+                ModifierKind::Public
+                    | ModifierKind::Protected
+                    | ModifierKind::Private
+                    | ModifierKind::Internal
+            )
+        });
+        let Declarations::Variables(variables) = section.declarations else {
+            let what = section.kind.as_str();
+            self.unsupported(unit_id, section.range, what);
+            return;
+        };
+        self.allowed_section(unit_id, kind, section);
+        for decl in &unit.arena[variables] {
+            let owned = self.pou_scope(id);
+            let ty = self.variable_type(id, owned.as_scope(), decl);
+            for ident in &unit.arena[decl.names] {
+                let initial = decl.initial.map(|expr| Initial {
+                    unit: unit_id,
+                    expr,
+                });
+                let mut var = Var {
+                    name: ident.name,
+                    range: ident.range,
+                    section: section.kind,
+                    ty,
+                    initial,
+                    constant,
+                    edge: decl.edge,
+                    access,
+                    storage: Storage::Local,
+                };
+                if let Some(location) = decl.location {
+                    self.located(id, &mut var, location);
+                }
+                if section.kind == SectionKind::External {
+                    self.external(id, &mut var);
+                } else if constant {
+                    self.fold_constant(id, &mut var);
+                }
+                self.add_var(id, var);
+            }
+        }
+    }
+
+    fn allowed_section(
+        &mut self,
+        unit: super::signature::UnitId,
+        kind: PouKind,
+        section: &st::VarSection,
+    ) {
+        use SectionKind as S;
+        let allowed = match (kind, section.kind) {
+            (PouKind::Interface, _) => false,
+            (PouKind::Class, kind) => matches!(kind, S::Var | S::External),
+            (_, S::Var | S::Temp | S::Input | S::Output | S::InOut | S::External) => true,
+            (_, S::Static | S::Instance) => {
+                return drop(self.unsupported(unit, section.range, section.kind.as_str()));
+            }
+            (PouKind::Program, S::Global | S::Access) => {
+                return drop(self.unsupported(unit, section.range, section.kind.as_str()));
+            }
+            (_, S::Global | S::Access | S::Config) => false,
+        };
+        if !allowed {
+            let span = self.span(unit, section.range);
+            let message = format!(
+                "{} cannot stand in a {}",
+                section.kind.as_str(),
+                kind.as_str()
+            );
+            self.error(Code::E1011, span, message);
+        }
+    }
+
+    fn variable_type(&mut self, id: PouId, scope: TypeScope<'_>, decl: &st::VarDecl) -> TypeId {
+        let unit = self.unit(scope.unit);
+        for ident in &unit.arena[decl.names] {
+            let open = scope.bindings.map_or(&[][..], |bindings| &bindings.open);
+            if let Some((_, ty)) = open.iter().find(|(name, _)| *name == ident.name) {
+                return *ty;
+            }
+        }
+        let ty = self.type_of_spec(scope, decl.ty);
+        self.complete_contained(id, ty, unit.span(unit.arena[decl.ty].range))
+    }
+
+    /// Completes the instances inside a type; gives the error type for a cycle.
+    fn complete_contained(&mut self, id: PouId, ty: TypeId, span: iecc_source::Span) -> TypeId {
+        let mut at = ty;
+        loop {
+            match self.types.base(at).clone() {
+                TypeKind::Array { element, .. } => at = element,
+                TypeKind::Instance(inner) => {
+                    let name = self.text(self.pou(inner).name);
+                    if self.pou(inner).state == State::InProgress {
+                        let message = format!("`{name}` contains itself");
+                        self.error(Code::E2009, span, message);
+                        return TypeId::ERROR;
+                    }
+                    if self.depth >= MAX_RESOLUTION_DEPTH {
+                        self.error(Code::E0013, span, "instances nest too deeply");
+                        return TypeId::ERROR;
+                    }
+                    self.depth += 1;
+                    self.complete(inner);
+                    self.depth -= 1;
+                    return ty;
+                }
+                TypeKind::Struct(index) => {
+                    let members: Vec<TypeId> = self.types.structs[index as usize]
+                        .members
+                        .iter()
+                        .map(|member| member.ty)
+                        .collect();
+                    for member in members {
+                        if self.types.is_scalar(member) {
+                            continue;
+                        }
+                        if self.complete_contained(id, member, span) == TypeId::ERROR {
+                            return TypeId::ERROR;
+                        }
+                    }
+                    return ty;
+                }
+                _ => return ty,
+            }
+        }
+    }
+
+    fn external(&mut self, id: PouId, var: &mut Var) {
+        let (unit, namespace) = (self.pou(id).unit, self.pou(id).namespace);
+        let span = self.span(unit, var.range);
+        match self.lookup(namespace, var.name) {
+            [Def::Global(global)] => {
+                let global = *global;
+                let declared = self.global(global).clone();
+                if self.types.strip(declared.ty) != self.types.strip(var.ty)
+                    && var.ty != TypeId::ERROR
+                {
+                    let message = format!(
+                        "`{}` is a {} where it is declared, not a {}",
+                        self.text(var.name),
+                        self.type_name(declared.ty),
+                        self.type_name(var.ty)
+                    );
+                    let diagnostic = Diagnostic::new(Code::E6040, span, message);
+                    self.report(diagnostic.also(declared.span, "declared here"));
+                }
+                var.constant |= declared.constant;
+                var.storage = Storage::Global(global);
+            }
+            _ => {
+                let message = format!("no global variable is named `{}`", self.text(var.name));
+                self.error(Code::E6041, span, message);
+                var.ty = TypeId::ERROR;
+            }
+        }
+    }
+
+    fn fold_constant(&mut self, id: PouId, var: &mut Var) {
+        if !self.types.is_scalar(var.ty) || var.ty == TypeId::ERROR {
+            return;
+        }
+        let owned = self.pou_scope(id);
+        let value = match var.initial {
+            Some(initial) => self.constant(owned.as_scope(), initial.expr, var.ty),
+            None => Some(self.default_const(var.ty)),
+        };
+        match value {
+            Some(value) => var.storage = Storage::Const(value),
+            None => var.ty = TypeId::ERROR,
+        }
+    }
+
+    fn add_var(&mut self, id: PouId, var: Var) {
+        let unit = self.pou(id).unit;
+        let span = self.span(unit, var.range);
+        if let Some(first) = self.pou(id).var(var.name) {
+            let first = self.span(unit, first.range);
+            self.declared_twice(var.name, span, first);
+            return;
+        }
+        let pou = &mut self.pous[id.index()];
+        pou.by_name.insert(var.name, pou.vars.len() as u32);
+        pou.vars.push(var);
+    }
+
+    /// Says where each variable lives.
+    fn place_vars(&mut self, id: PouId) {
+        let instances = self.pou(id).has_instances();
+        let (mut field, mut reference) = (self.pou(id).extends.len() as u32, u32::from(instances));
+        if self.pou(id).owner.is_some() {
+            reference = 1;
+        }
+        for index in 0..self.pou(id).vars.len() {
+            let var = &self.pou(id).vars[index];
+            if var.storage != Storage::Local {
+                continue;
+            }
+            let scalar = self.types.is_scalar(var.ty);
+            let storage = match var.section {
+                SectionKind::InOut => Storage::Ref(0),
+                SectionKind::Input | SectionKind::Output if !instances && !scalar => {
+                    Storage::Ref(0)
+                }
+                SectionKind::Input | SectionKind::Output | SectionKind::Var if instances => {
+                    Storage::Field(field)
+                }
+                _ => Storage::Local,
+            };
+            let edge = var.edge.is_some();
+            let storage = match storage {
+                Storage::Ref(_) => {
+                    reference += 1;
+                    Storage::Ref(reference - 1)
+                }
+                Storage::Field(_) => {
+                    field += 1 + u32::from(edge);
+                    Storage::Field(field - 1 - u32::from(edge))
+                }
+                other => other,
+            };
+            self.pous[id.index()].vars[index].storage = storage;
+        }
+    }
+
+    /// How a unit is called; its signature must be complete.
+    pub(crate) fn call_shape(&self, id: PouId) -> CallShape {
+        let pou = self.pou(id);
+        let mut shape = CallShape {
+            instance: pou.has_instances() || pou.owner.is_some(),
+            ..CallShape::default()
+        };
+        for (index, var) in pou.vars.iter().enumerate() {
+            match (&var.storage, var.section) {
+                (Storage::Ref(_), _) => shape.refs.push(index),
+                (Storage::Local, SectionKind::Input) => shape.params.push(index),
+                (Storage::Local, SectionKind::Output) => shape.results.push(index),
+                _ => {}
+            }
+        }
+        if let Some(result) = pou.result {
+            let scalar = self.types.is_scalar(result);
+            (shape.result_by_value, shape.result_by_ref) = (scalar, !scalar);
+        }
+        shape
+    }
+}
+
+/// A [`TypeScope`] that borrows nothing.
+#[derive(Debug, Clone)]
+pub(crate) struct OwnedScope {
+    unit: super::signature::UnitId,
+    namespace: super::signature::NamespaceId,
+    bindings: super::signature::Bindings,
+    pou: PouId,
+}
+
+impl OwnedScope {
+    pub(crate) fn as_scope(&self) -> TypeScope<'_> {
+        TypeScope {
+            unit: self.unit,
+            namespace: self.namespace,
+            bindings: Some(&self.bindings),
+            pou: Some(self.pou),
+        }
+    }
+}
