@@ -8,14 +8,15 @@ use crate::rename::{Rename, rename};
 use crate::run::parse_duration;
 use crate::{Language, Levels, Sources};
 use iecc_ast::Names;
+use iecc_ast::st::File;
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_grammar::st::{Dialect, parse_file};
 use iecc_interp::run_prescan;
 use iecc_ir::{Module, verify};
 use iecc_lower::MILLISECOND_NS;
 use iecc_sema::hir::{self, StructKind};
-use iecc_sema::logix;
-use iecc_source::{SourceMap, Span};
+use iecc_sema::{logix, st};
+use iecc_source::{FileId, SourceMap};
 
 /// Choices that the source does not make.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -147,14 +148,37 @@ fn check_text(
     found: &mut Diagnostics,
 ) -> Option<hir::Program> {
     let mut names = Names::new();
-    for &file in sources.files() {
-        let text = map.file(file).text();
-        parse_file(file, text, options.dialect, &mut names, found);
+    let library = library(map, sources, &mut names);
+    let parse = |file: &FileId| {
+        let text = map.file(*file).text();
+        parse_file(*file, text, options.dialect, &mut names, found)
+    };
+    let files: Vec<File> = sources.files().iter().map(parse).collect();
+    st::intern_words(&mut names);
+    let options = st::Options {
+        codesys: options.dialect == Dialect::Codesys,
+    };
+    Some(st::analyze(&library, &files, &names, options, found))
+}
+
+/// The trees of the standard library.
+fn library(map: &SourceMap, sources: &Sources, names: &mut Names) -> Vec<File> {
+    let mut found = Diagnostics::new();
+    let files = sources.library().iter();
+    let parse = |file: &FileId| {
+        parse_file(
+            *file,
+            map.file(*file).text(),
+            Dialect::Iec,
+            names,
+            &mut found,
+        )
+    };
+    let library = files.map(parse).collect();
+    if let Some(mistake) = found.iter().next() {
+        panic!("the library does not follow the grammar: {mistake:?}");
     }
-    let place = Span::point(sources.files()[0], 0);
-    let message = "this version of iecc reads Structured Text, and does not compile it yet";
-    found.push(Diagnostic::new(Code::E5025, place, message));
-    None
+    library
 }
 
 /// Compiles the program to a module that keeps the rules of the IR and whose image is that after

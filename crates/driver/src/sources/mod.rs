@@ -25,6 +25,7 @@ use std::path::{Path, PathBuf};
 pub struct Sources {
     language: Language,
     files: Vec<FileId>,
+    library: Vec<FileId>,
 }
 
 impl Sources {
@@ -33,14 +34,18 @@ impl Sources {
         Self {
             language: Language::Logix,
             files: vec![file],
+            library: Vec::new(),
         }
     }
 
-    /// Files of Structured Text.
-    pub fn text(files: Vec<FileId>) -> Self {
+    /// Files of Structured Text, and the library, whose texts follow them in the map.
+    pub fn text(map: &mut SourceMap, files: Vec<FileId>) -> Self {
+        let library = iecc_stdlib::IEC.iter();
+        let library = library.map(|file| map.add(file.path, file.text)).collect();
         Self {
             language: Language::StructuredText,
             files,
+            library,
         }
     }
 
@@ -69,6 +74,11 @@ impl Sources {
     /// The files, in order.
     pub fn files(&self) -> &[FileId] {
         &self.files
+    }
+
+    /// The files of the standard library, in order.
+    pub(crate) fn library(&self) -> &[FileId] {
+        &self.library
     }
 }
 
@@ -207,8 +217,11 @@ impl Chosen {
         let files: Vec<Option<FileId>> = paths
             .map(|(path, _)| load(map, path, diagnostics))
             .collect();
-        let files = files.into_iter().collect::<Option<_>>()?;
-        Some(Sources { language, files })
+        let files: Vec<FileId> = files.into_iter().collect::<Option<_>>()?;
+        Some(match language {
+            Language::Logix => Sources::logix(files[0]),
+            Language::StructuredText => Sources::text(map, files),
+        })
     }
 
     /// The language of all of them.
