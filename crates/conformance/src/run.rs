@@ -79,12 +79,8 @@ fn words(panic: &(dyn Any + Send)) -> &str {
 fn compile_and_run(case: &Case) -> CaseResult {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let file = map.add(format!("{}.st", case.name), case.text.as_str());
-    let module = compile(
-        &map,
-        &Sources::text(vec![file]),
-        &options(case),
-        &mut diagnostics,
-    );
+    let sources = Sources::text(&mut map, vec![file]);
+    let module = compile(&map, &sources, &options(case), &mut diagnostics);
     let front = compare(&case.messages, &diagnostics, &map);
     match (front, module, &case.trace) {
         (Err(what), _, _) => CaseResult {

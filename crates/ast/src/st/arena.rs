@@ -178,6 +178,11 @@ impl Arena {
         }
     }
 
+    /// All nodes of a kind.
+    pub fn all<T: Stored>(&self) -> &[T] {
+        T::all(self)
+    }
+
     /// How many nodes of a kind there are; ids are below.
     pub fn count<T: Stored>(&self) -> usize {
         T::all(self).len()

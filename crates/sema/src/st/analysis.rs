@@ -78,6 +78,8 @@ pub(crate) struct Analysis<'a> {
     pub instances: FxHashMap<(PouId, super::signature::Bindings), PouId>,
     /// The bodies that are needed, in the order they came up, and their place in the typed program.
     pub wanted: Vec<PouId>,
+    /// Units whose bodies name ENO.
+    pub eno_units: std::cell::RefCell<FxHashMap<UnitId, bool>>,
     /// Bodies that no source has.
     pub synthetics: Vec<(hir::PouId, hir::Pou)>,
     /// How many bodies have a name.

@@ -125,6 +125,7 @@ impl<'a> Analysis<'a> {
             hir: hir::Program::empty(),
             instances: FxHashMap::default(),
             wanted: Vec::new(),
+            eno_units: std::cell::RefCell::default(),
             synthetics: Vec::new(),
             unit_names: FxHashMap::default(),
             hir_ids: FxHashMap::default(),

@@ -22,6 +22,8 @@ pub(crate) struct CallShape {
     pub results: Vec<usize>,
     /// Whether the first result is that of the function.
     pub result_by_value: bool,
+    /// Whether ENO is the last result.
+    pub eno: bool,
 }
 
 /// The interface of a unit as it is written.
@@ -397,7 +399,21 @@ impl Analysis<'_> {
             let scalar = self.types.is_scalar(result);
             (shape.result_by_value, shape.result_by_ref) = (scalar, !scalar);
         }
+        shape.eno = self.uses_eno(id);
         shape
+    }
+
+    /// Whether a body changes its ENO. All bodies of a unit count as one.
+    fn uses_eno(&self, id: PouId) -> bool {
+        let unit = self.pou(id).unit;
+        if let Some(known) = self.eno_units.borrow().get(&unit) {
+            return *known;
+        }
+        let arena = &self.unit(unit).arena;
+        let eno = st::ExprKind::Name(self.words.eno);
+        let uses = arena.all::<st::Expr>().iter().any(|expr| expr.kind == eno);
+        self.eno_units.borrow_mut().insert(unit, uses);
+        uses
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{Call, ExprKind, PathId, PathStep, Root, StmtKind};
+use crate::st::constant::Const;
 use crate::st::signature::{Def, PouId, Storage, Var};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
@@ -20,8 +21,102 @@ enum Callee {
 }
 
 impl Body<'_, '_> {
+    /// Whether a name is EN or ENO.
+    pub(super) fn is_enable(&self, name: Symbol) -> bool {
+        name == self.an.words.en || name == self.an.words.eno
+    }
+
+    /// The argument for EN, if a call has one.
+    pub(super) fn enable(&self, call: st::Id<st::Expr>) -> Option<st::Id<st::Expr>> {
+        let Written::Call { arguments, .. } = self.arena()[call].kind else {
+            return None;
+        };
+        let mut arguments = self.arena()[arguments].iter();
+        let found = arguments.find(|argument| {
+            matches!(argument.kind, ArgumentKind::Input(name) if name.name == self.an.words.en)
+        })?;
+        found.value
+    }
+
+    /// Where ENO of a call goes.
+    pub(super) fn eno_target(&self, arguments: st::List<Argument>) -> Option<Argument> {
+        let mut arguments = self.arena()[arguments].iter();
+        let found = arguments.find(|argument| match argument.kind {
+            ArgumentKind::Output(name) | ArgumentKind::NegatedOutput(name) => {
+                name.name == self.an.words.eno
+            }
+            ArgumentKind::Positional | ArgumentKind::Input(_) => false,
+        });
+        found.copied()
+    }
+
+    /// What `run` does, only if the EN of a call is TRUE; else ENO of the call is FALSE and nothing
+    /// happens.
+    pub(super) fn enabled(
+        &mut self,
+        call: st::Id<st::Expr>,
+        enable: st::Id<st::Expr>,
+        run: impl FnOnce(&mut Self),
+    ) {
+        let range = self.arena()[call].range;
+        let condition = self.scalar_expr(enable, TypeId::BOOL);
+        let outer = std::mem::take(&mut self.pending);
+        let skipped = self.skips.insert(call);
+        run(self);
+        if skipped {
+            self.skips.remove(&call);
+        }
+        let then = std::mem::take(&mut self.pending);
+        if let Written::Call { arguments, .. } = self.arena()[call].kind
+            && let Some(eno) = self.eno_target(arguments)
+            && let Some(target) = eno.value
+        {
+            let none = Operand::constant(Const::Int(0), TypeId::BOOL, range);
+            self.output_to(none, target, &eno);
+        }
+        let otherwise = std::mem::replace(&mut self.pending, outer);
+        let kind = StmtKind::If {
+            arms: vec![(condition, then)],
+            otherwise,
+        };
+        self.before(kind, range);
+    }
+
+    /// The value of a call with EN inside of an expression: where the call is skipped, the default
+    /// of its type.
+    fn enabled_value(
+        &mut self,
+        id: st::Id<st::Expr>,
+        enable: st::Id<st::Expr>,
+        want: Option<TypeId>,
+    ) -> Operand {
+        let range = self.arena()[id].range;
+        let mut result = Operand::error(range);
+        self.enabled(id, enable, |body| {
+            let value = body.expr(id, want);
+            if value.is_error() {
+                return;
+            }
+            let ty = body.settle(&value);
+            let place = body.temporary("result", ty);
+            body.store(&place, ty, &value, range);
+            result = Operand {
+                kind: OperandKind::Place(place),
+                ty,
+                range,
+            };
+        });
+        result
+    }
+
     /// A call as a statement.
     pub(super) fn call_statement(&mut self, id: st::Id<st::Expr>) {
+        if let Some(enable) = self.enable(id)
+            && !self.skips.contains(&id)
+        {
+            self.enabled(id, enable, |body| body.call_statement(id));
+            return;
+        }
         let written = self.arena()[id];
         let Written::Call { callee, arguments } = written.kind else {
             let operand = self.place(id, None);
@@ -49,11 +144,17 @@ impl Body<'_, '_> {
     /// A call in an expression.
     pub(super) fn call(
         &mut self,
+        id: st::Id<st::Expr>,
         callee: st::Id<st::Expr>,
         arguments: st::List<Argument>,
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
+        if let Some(enable) = self.enable(id)
+            && !self.skips.contains(&id)
+        {
+            return self.enabled_value(id, enable, want);
+        }
         if let Some(operand) = self.typed_conversion(callee, arguments, range) {
             return operand;
         }
@@ -288,14 +389,20 @@ impl Body<'_, '_> {
         self.require_in_outs(pou, &matched, range);
         let this = self.path_of(place, range);
         let given: Option<Vec<PathId>> = refs.into_iter().collect();
+        let eno = self.eno_target(arguments);
+        let eno_place = eno.map(|_| self.temporary("ENO", TypeId::BOOL));
         if let Some(given) = given {
             let callee = self.an.want(pou);
             let refs = std::iter::once(this).chain(given).collect();
+            let mut outputs = Vec::new();
+            if let (true, Some(eno)) = (shape.eno, &eno_place) {
+                outputs.push((0, self.path_of(eno, range)));
+            }
             let call = self.add_call(Call {
                 callee,
                 refs,
                 args: Vec::new(),
-                outputs: Vec::new(),
+                outputs,
             });
             let value = self.add_expr(ExprKind::Call(call), crate::hir::Elementary::Bool, range);
             self.before(StmtKind::Eval(value), range);
@@ -304,6 +411,25 @@ impl Body<'_, '_> {
             if var.section == SectionKind::Output {
                 self.block_output(place, var, argument);
             }
+        }
+        if let (Some(eno), Some(place)) = (eno, eno_place) {
+            self.eno_to(shape.eno, place, &eno);
+        }
+    }
+
+    /// Stores the ENO of a call; it is TRUE where the body does not change it.
+    pub(super) fn eno_to(&mut self, changes: bool, place: Place, argument: &Argument) {
+        let value = if changes {
+            Operand {
+                kind: OperandKind::Place(place),
+                ty: TypeId::BOOL,
+                range: argument.range,
+            }
+        } else {
+            Operand::constant(Const::Int(1), TypeId::BOOL, argument.range)
+        };
+        if let Some(target) = argument.value {
+            self.output_to(value, target, argument);
         }
     }
 
@@ -457,12 +583,7 @@ impl Body<'_, '_> {
                 ArgumentKind::Input(name)
                 | ArgumentKind::Output(name)
                 | ArgumentKind::NegatedOutput(name) => {
-                    if name.name == self.an.words.en || name.name == self.an.words.eno {
-                        self.error(
-                            Message::E2010,
-                            name.range,
-                            "EN and ENO are not compiled yet",
-                        );
+                    if self.is_enable(name.name) {
                         continue;
                     }
                     let found = parameters.iter().find(|var| var.name == name.name);

@@ -27,7 +27,7 @@ impl Body<'_, '_> {
             | Written::Super => self.place(id, want),
             Written::Null => Operand::constant(Const::Null, TypeId::NULL, range),
             Written::Ref(operand) => self.reference_to(operand, range),
-            Written::Call { callee, arguments } => self.call(callee, arguments, range, want),
+            Written::Call { callee, arguments } => self.call(id, callee, arguments, range, want),
             Written::Unary { op, operand } => self.unary(op, operand, range, want),
             Written::Binary {
                 op, left, right, ..

@@ -36,12 +36,19 @@ impl Body<'_, '_> {
             let Some(value) = argument.value else {
                 continue;
             };
-            operands.push((argument.kind, self.expr(value, None)));
+            match argument.kind {
+                ArgumentKind::Input(name)
+                | ArgumentKind::Output(name)
+                | ArgumentKind::NegatedOutput(name)
+                    if self.is_enable(name.name) => {}
+                _ => operands.push((argument.kind, self.expr(value, None))),
+            }
         }
         if operands.iter().any(|(_, operand)| operand.is_error()) {
             return Operand::error(range);
         }
-        self.library(functions, operands, range, want)
+        let eno = self.eno_target(arguments);
+        self.library(functions, operands, eno, range, want)
     }
 
     /// A call of a library function by its name, made by the compiler.
@@ -61,19 +68,20 @@ impl Body<'_, '_> {
             .into_iter()
             .map(|operand| (ArgumentKind::Positional, operand))
             .collect();
-        self.library(&functions, operands, range, want)
+        self.library(&functions, operands, None, range, want)
     }
 
     fn library(
         &mut self,
         functions: &[PouId],
         operands: Vec<(ArgumentKind, Operand)>,
+        eno: Option<Argument>,
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
         for &function in functions {
             if let Some(bound) = self.bind(function, &operands, want) {
-                return self.bound_call(function, bound, operands, range, want);
+                return self.bound_call(function, bound, operands, eno, range, want);
             }
         }
         let name = self.text(self.an.pou(functions[0]).name);
@@ -238,6 +246,7 @@ impl Body<'_, '_> {
         function: PouId,
         bound: Bound,
         operands: Vec<(ArgumentKind, Operand)>,
+        eno: Option<Argument>,
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
@@ -252,6 +261,10 @@ impl Body<'_, '_> {
             let operands = ordered.into_iter().map(|(_, operand)| operand).collect();
             let name = name.to_owned();
             let result = self.an.library_result(function, &bound.bindings).or(want);
+            if let Some(eno) = eno {
+                let place = self.temporary("ENO", TypeId::BOOL);
+                self.eno_to(false, place, &eno);
+            }
             return self.intrinsic(&name, &bound.bindings, operands, range, result);
         }
         if self.constant_only {
@@ -268,7 +281,7 @@ impl Body<'_, '_> {
             .zip(operands)
             .map(|(position, (_, operand))| (vars[*position].clone(), operand))
             .collect();
-        self.finish_call(instance, None, arguments, Vec::new(), range)
+        self.finish_call(instance, None, arguments, Vec::new(), eno, range)
     }
 
     /// An extensible function with more than two arguments: from the left, two at a time.
@@ -285,7 +298,7 @@ impl Body<'_, '_> {
             .expect("extensible functions have arguments");
         for operand in operands {
             let arguments = vec![(vars[0].clone(), result), (vars[1].clone(), operand)];
-            result = self.finish_call(instance, None, arguments, Vec::new(), range);
+            result = self.finish_call(instance, None, arguments, Vec::new(), None, range);
         }
         result
     }
@@ -318,7 +331,8 @@ impl Body<'_, '_> {
                 }
             }
         }
-        self.finish_call(callee, place, given, outputs, range)
+        let eno = self.eno_target(arguments);
+        self.finish_call(callee, place, given, outputs, eno, range)
     }
 
     /// Writes a call down: omitted inputs take their defaults, outputs go where they are wanted.
@@ -328,6 +342,7 @@ impl Body<'_, '_> {
         place: Option<Place>,
         given: Vec<(Var, Operand)>,
         outputs: Vec<(Var, Argument)>,
+        eno: Option<Argument>,
         range: TextRange,
     ) -> Operand {
         let shape = self.an.call_shape(callee);
@@ -387,7 +402,7 @@ impl Body<'_, '_> {
             args,
             outputs: Vec::new(),
         };
-        self.emit_call(call, &shape, &pou, result_place, &outputs, &after, range)
+        self.emit_call(call, &shape, &pou, result_place, &outputs, &after, eno, range)
     }
 
     #[expect(clippy::too_many_arguments, reason = "the parts of one call")]
@@ -399,6 +414,7 @@ impl Body<'_, '_> {
         result_place: Option<Place>,
         outputs: &[(Var, Argument)],
         by_ref: &[(Symbol, Place, TypeId)],
+        eno: Option<Argument>,
         range: TextRange,
     ) -> Operand {
         // Outputs pass through temporaries: a target may have another type, or be negated.
@@ -421,7 +437,13 @@ impl Body<'_, '_> {
             };
             moves.push((from, *argument));
         }
-        let direct = moves.is_empty() && shape.result_by_value;
+        let eno = eno.map(|argument| (argument, self.temporary("ENO", TypeId::BOOL)));
+        if let (true, Some((_, place))) = (shape.eno, &eno) {
+            let position = shape.results.len() as u32 + u32::from(shape.result_by_value);
+            let path = self.path_of(place, range);
+            call.outputs.push((position, path));
+        }
+        let direct = moves.is_empty() && eno.is_none() && shape.result_by_value;
         let ty = match pou.result {
             Some(ty) if shape.result_by_value => self.an.scalar(ty),
             _ => crate::hir::Elementary::Bool,
@@ -450,6 +472,9 @@ impl Body<'_, '_> {
             if let Some(target) = argument.value {
                 self.output_to(from, target, &argument);
             }
+        }
+        if let Some((argument, place)) = eno {
+            self.eno_to(shape.eno, place, &argument);
         }
         match (result, pou.result) {
             (Some(place), Some(ty)) => Operand {
@@ -558,12 +583,8 @@ impl Body<'_, '_> {
             return Some(Operand::error(range));
         }
         let value = self.as_type(operand, source);
-        Some(self.library(
-            &functions,
-            vec![(ArgumentKind::Positional, value)],
-            range,
-            None,
-        ))
+        let operands = vec![(ArgumentKind::Positional, value)];
+        Some(self.library(&functions, operands, None, range, None))
     }
 
     /// `ADD_INT(a, b)`: a generic function with the type of its arguments in its name.
@@ -583,7 +604,8 @@ impl Body<'_, '_> {
             }
             operands.push((argument.kind, self.as_type(operand, source)));
         }
-        Some(self.library(functions, operands, range, Some(source)))
+        let eno = self.eno_target(arguments);
+        Some(self.library(functions, operands, eno, range, Some(source)))
     }
 
     /// An operand as one of a type; texts keep their length.
@@ -866,7 +888,7 @@ impl Body<'_, '_> {
             (ArgumentKind::Positional, to),
             (ArgumentKind::Positional, from),
         ];
-        let result = self.library(&functions, operands, range, None);
+        let result = self.library(&functions, operands, None, range, None);
         if let OperandKind::Value(value) = result.kind {
             self.before(StmtKind::Eval(value), range);
         }

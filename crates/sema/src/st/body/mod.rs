@@ -29,6 +29,7 @@ use iecc_ast::Symbol;
 use iecc_ast::st;
 use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::{Span, TextRange};
+use std::collections::HashSet;
 
 /// A body that is being checked, or the surroundings of a constant expression.
 pub(crate) struct Body<'b, 'a> {
@@ -44,10 +45,14 @@ pub(crate) struct Body<'b, 'a> {
     result: Option<LocalId>,
     /// The reference that holds the result.
     result_ref: Option<u32>,
+    /// The local that holds ENO.
+    eno: Option<LocalId>,
     /// Control variables of the loops around, innermost last.
     loops: Vec<Option<(Root, Vec<PathStep>)>>,
     /// Statements that have to run before the one that is being looked at.
     pending: Vec<StmtId>,
+    /// Calls whose EN has been looked at.
+    skips: HashSet<st::Id<st::Expr>>,
     /// Whether only constants are allowed; what is not constant is reported at its use.
     constant_only: bool,
 }
@@ -65,8 +70,10 @@ impl<'b, 'a> Body<'b, 'a> {
             locals: Vec::new(),
             result: None,
             result_ref: None,
+            eno: None,
             loops: Vec::new(),
             pending: Vec::new(),
+            skips: HashSet::new(),
             constant_only: true,
         }
     }
@@ -177,8 +184,10 @@ impl Analysis<'_> {
             locals: Vec::new(),
             result: None,
             result_ref: None,
+            eno: None,
             loops: Vec::new(),
             pending: Vec::new(),
+            skips: HashSet::new(),
             constant_only: false,
         };
         body.interface(id);
@@ -227,6 +236,11 @@ impl Body<'_, '_> {
         }
         for &index in &shape.results {
             let local = self.locals[index].expect("outputs by value are locals");
+            self.code.results.push(local);
+        }
+        if shape.eno {
+            let local = self.add_local("ENO", Type::Elementary(Elementary::Bool));
+            self.eno = Some(local);
             self.code.results.push(local);
         }
     }

@@ -34,6 +34,21 @@ impl Body<'_, '_> {
         if let Some(operand) = self.own_name(name, range) {
             return operand;
         }
+        if let Some(eno) = self.eno
+            && name == self.an.words.eno
+        {
+            return self.place_operand(
+                Root::Local(eno),
+                Vec::new(),
+                Rights::All,
+                TypeId::BOOL,
+                range,
+            );
+        }
+        if name == self.an.words.en && self.pou.is_some() {
+            // The body runs only when it is TRUE.
+            return Operand::constant(Const::Int(1), TypeId::BOOL, range);
+        }
         if let Some(ty) = want
             && let Some(operand) = self.find_enumerator(ty, name, range)
         {

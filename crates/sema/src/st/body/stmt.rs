@@ -15,6 +15,12 @@ impl Body<'_, '_> {
     pub(super) fn statements_of(&mut self, id: PouId) {
         let mut body = Vec::new();
         self.initialise(id, &mut body);
+        if let Some(eno) = self.eno {
+            let range = TextRange::default();
+            let path = self.add_path(Root::Local(eno), Vec::new(), range);
+            let value = self.add_const(1, crate::hir::Elementary::Bool, range);
+            body.push(self.add_stmt(StmtKind::Assign(path, value), range));
+        }
         if let Some(written) = self.written_body(id) {
             body.extend(self.block(written));
         }
@@ -214,6 +220,14 @@ impl Body<'_, '_> {
         value: st::Id<st::Expr>,
         range: TextRange,
     ) {
+        if let Some(enable) = self.enable(value)
+            && op == AssignOp::Set
+            && !self.skips.contains(&value)
+        {
+            // Where the call is skipped, the variable keeps its value.
+            self.enabled(value, enable, |body| body.assign(target, op, value, range));
+            return;
+        }
         if op != AssignOp::Set {
             self.special_assign(target, op, value, range);
             return;
