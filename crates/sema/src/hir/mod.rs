@@ -41,11 +41,6 @@ impl PouId {
     pub fn index(self) -> usize {
         self.0 as usize
     }
-
-    /// The id of a position.
-    pub fn from_index(index: usize) -> Self {
-        Self(index as u32)
-    }
 }
 
 impl TagId {
