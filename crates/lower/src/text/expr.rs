@@ -1,11 +1,12 @@
 //! Expressions to values.
 
+use super::Unit;
 use super::convert::{convert, resize};
-use super::{Unit, not_yet};
 use crate::types::{result_types, scalar};
 use crate::values;
 use iecc_ir::{
-    BinaryOp as Ir, CompareOp as IrCompare, FaultCode, FuncId, Type, UnaryOp as IrUnary, Value,
+    BinaryOp as Ir, CompareOp as IrCompare, FaultCode, FuncId, Root, Type, UnaryOp as IrUnary,
+    Value,
 };
 use iecc_sema::hir::code::{BinaryOp, CallId, Expr, ExprId, ExprKind, PathId, UnaryOp};
 use iecc_sema::hir::{Arithmetic, CompareOp, Elementary};
@@ -20,7 +21,7 @@ impl<'p> Unit<'_, 'p> {
             ExprKind::Const(bits) => self.builder.constant(ty, *bits),
             ExprKind::Load(path) => {
                 let at = self.locate(*path);
-                self.read(&at)
+                self.take(at)
             }
             ExprKind::Unary(op, arg) => {
                 let value = self.expr(*arg);
@@ -213,9 +214,14 @@ impl<'p> Unit<'_, 'p> {
         self.builder.read(chosen)
     }
 
+    /// Nothing outlives what is local, so that has no address.
     fn address(&mut self, path: PathId) -> Value {
         let place = self.memory(path);
-        not_yet::address(&mut self.builder, place)
+        match place.root {
+            Root::Local(_) => self.builder.constant(Type::I64, 0),
+            Root::State | Root::Ref(_) | Root::Deref { .. } => self.builder.address(place),
+            Root::Input | Root::Output => panic!("bodies do not reach public points"),
+        }
     }
 
     /// Calls and stores the results that go somewhere; gives the first.
@@ -229,7 +235,7 @@ impl<'p> Unit<'_, 'p> {
         let results = self.builder.call(func, refs, args, &types);
         for &(position, path) in &call.outputs {
             let at = self.locate(path);
-            self.write(&at, results[position as usize]);
+            self.put(at, results[position as usize]);
         }
         results.first().copied()
     }

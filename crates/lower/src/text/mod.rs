@@ -16,7 +16,6 @@ mod expr;
 mod fault;
 mod initial;
 mod loops;
-mod not_yet;
 mod place;
 mod stmt;
 

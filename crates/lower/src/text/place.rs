@@ -9,7 +9,7 @@
 //! every length. Only an ULINT can wrap upwards, if the lower bound is negative, and is tested for that.
 
 use super::convert::{bits_type, float_bits, resize};
-use super::{Storage, Unit, not_yet};
+use super::{Storage, Unit};
 use crate::types::{elementary, scalar};
 use iecc_ir::{
     BinaryOp, CompareOp, ConvertOp, FaultCode, Index, Place, RefParam, Root as IrRoot, Type, Value,
@@ -109,7 +109,7 @@ impl Unit<'_, '_> {
                     self.check_not_zero(value, FaultCode::Reference, span);
                 }
                 let mem = self.lowering.types.mem_type(ty);
-                (not_yet::deref(value, mem), ty)
+                (IrRoot::Deref { value, ty: mem }, ty)
             }
         };
         Located::memory(Place::root(root), ty)
@@ -250,6 +250,24 @@ impl Unit<'_, '_> {
             Part::Whole => scalar(elementary(at.ty)),
             Part::Bits { count, .. } => bit_string(count),
             Part::Bytes { ty, .. } => scalar(ty),
+        }
+    }
+
+    /// The elementary value at a place that is not used again.
+    pub(super) fn take(&mut self, at: Located) -> Value {
+        match (at.base, at.part) {
+            (Base::Memory(place), Part::Whole) => {
+                self.builder.load(place, scalar(elementary(at.ty)))
+            }
+            (base, part) => self.read(&Located { base, part, ..at }),
+        }
+    }
+
+    /// Stores an elementary value at a place that is not used again.
+    pub(super) fn put(&mut self, at: Located, value: Value) {
+        match (at.base, at.part) {
+            (Base::Memory(place), Part::Whole) => self.builder.store(place, value),
+            (base, part) => self.write(&Located { base, part, ..at }, value),
         }
     }
 

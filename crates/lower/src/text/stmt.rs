@@ -23,7 +23,7 @@ impl<'p> Unit<'_, 'p> {
             StmtKind::Assign(to, value) => {
                 let value = self.expr(*value);
                 let to = self.locate(*to);
-                self.write(&to, value);
+                self.put(to, value);
             }
             StmtKind::Copy(to, from) => self.copy(*to, *from),
             StmtKind::Initialise(to, init) => {

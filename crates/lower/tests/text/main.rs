@@ -7,5 +7,6 @@ mod hand;
 mod initial;
 mod loops;
 mod places;
+mod references;
 mod statements;
 mod tasks;

@@ -247,7 +247,8 @@ pub enum PathStep {
     Character {
         /// The position, of any integer type.
         value: ExprId,
-        /// Whether the position need not be tested against the length.
+        /// Whether the position need not be tested; outside of all that can be stored it reads as 0 and
+        /// is not stored to.
         checked: bool,
     },
     /// Some bits of an integer or bit string, the lowest first; always last. One bit is a `BOOL`.
