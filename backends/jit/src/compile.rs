@@ -1,22 +1,21 @@
-//! From a module to machine code: declares every function the scan needs, compiles them callees
-//! first, and sums up how much stack the deepest chain of calls takes.
+//! From a module to functions of machine code: declares every function the scan needs, compiles them
+//! callees first, sums up how much stack the deepest chain of calls takes, and adds the entry.
+//!
+//! Whether the code is run here or written to a file is decided by who owns the `MachineModule`.
 
-use crate::code::{Code, copy_bytes, fill_bytes};
+use crate::block::Block;
+use crate::entry;
+use crate::isa::has_rounding;
 use crate::plan::{Plan, calls};
 use crate::translate::{Program, translate};
+use crate::writes::Writes;
 use cranelift_codegen::Context;
-use cranelift_codegen::isa::OwnedTargetIsa;
-use cranelift_codegen::settings::{self, Configurable};
+use cranelift_codegen::ir as clif;
 use cranelift_entity::SecondaryMap;
 use cranelift_frontend::FunctionBuilderContext;
-use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
-use cranelift_module::{FuncId as DeclaredId, Linkage, Module as _, ModuleError};
+use cranelift_module::{FuncId as DeclaredId, Linkage, Module as MachineModule, ModuleError};
 use iecc_ir::{FuncId, Layout, Module};
 use iecc_target::{Refusal, TargetError};
-
-/// Address space for code; pages are only taken as they are filled. One piece, so that calls reach
-/// every function.
-const CODE_BYTES: usize = 256 << 20;
 
 /// Most stack a scan may take. Threads have at least 2 MiB unless told otherwise.
 const MAX_STACK_BYTES: u64 = 1 << 20;
@@ -24,98 +23,80 @@ const MAX_STACK_BYTES: u64 = 1 << 20;
 /// Return address and saved frame pointer.
 const FRAME_OVERHEAD_BYTES: u64 = 16;
 
-/// The machine code of a program, or why there is none.
+/// A program whose functions are defined in a machine module, but for the entry.
+pub(crate) struct Compiled {
+    /// The memory of a controller.
+    pub(crate) block: Block,
+    /// The function of one scan.
+    pub(crate) scan: DeclaredId,
+    /// Stack a call of the entry takes at most.
+    pub(crate) stack_bytes: u64,
+}
+
+/// Defines the functions of a program.
 pub(crate) fn compile(
     module: &Module,
-    layout: &Layout,
-    plan: &Plan,
-) -> Result<Code, Vec<TargetError>> {
-    let mut jit = new_module()?;
+    unit: &mut dyn MachineModule,
+) -> Result<Compiled, Vec<TargetError>> {
+    let layout = Layout::new(&module.types);
+    let plan = Plan::new(module, &layout);
     let mut program = Program {
         module,
-        layout,
-        plan,
+        layout: &layout,
+        plan: &plan,
+        has_rounding: has_rounding(unit.isa()),
         declared: SecondaryMap::new(),
     };
-    let declared = declare(&mut program, &mut jit);
-    let defined = define(&program, &mut jit, &declared);
-    // Owns the memory from here on, so that it is freed whatever happens.
-    let mut code = Code::new(jit);
-    defined?;
-    code.finish(declared[declared.len() - 1])
+    let declared = declare(&mut program, unit);
+    let stack_bytes = define(&program, unit, &declared)?;
+    Ok(Compiled {
+        block: Block::new(module, &plan, &Writes::new(module, &layout, &plan)),
+        scan: declared[declared.len() - 1],
+        stack_bytes,
+    })
+}
+
+/// Defines the entry under a name.
+pub(crate) fn define_entry(
+    compiled: &mut Compiled,
+    unit: &mut dyn MachineModule,
+    name: &str,
+    linkage: Linkage,
+) -> Result<DeclaredId, Vec<TargetError>> {
+    let pointer = unit.target_config().pointer_type();
+    let mut context = unit.make_context();
+    let mut frontend = FunctionBuilderContext::new();
+    entry::signature(&mut context.func.signature, pointer);
+    let id = declare_one(unit, name, linkage, &context.func.signature);
+    entry::build(unit, compiled, &mut context.func, &mut frontend);
+    unit.define_function(id, &mut context)
         .map_err(|error| refuse(&error, None))?;
-    Ok(code)
+    compiled.stack_bytes += frame_bytes(&context);
+    Ok(id)
 }
 
-fn new_module() -> Result<JITModule, Vec<TargetError>> {
-    let isa = host()?;
-    let names = cranelift_module::default_libcall_names();
-    let mut builder = JITBuilder::with_isa(isa, names);
-    let memory = ArenaMemoryProvider::new_with_size(CODE_BYTES)
-        .map_err(|error| size_error(format!("no memory for machine code: {error}")))?;
-    builder.memory_provider(Box::new(memory));
-    // What processors without SSE4.1 call to round.
-    builder.symbol("nearbyintf", round_f32 as *const u8);
-    builder.symbol("nearbyint", round_f64 as *const u8);
-    builder.symbol("memmove", copy_bytes as *const u8);
-    builder.symbol("memset", fill_bytes as *const u8);
-    Ok(JITModule::new(builder))
-}
-
-extern "C" fn round_f32(x: f32) -> f32 {
-    x.round_ties_even()
-}
-
-extern "C" fn round_f64(x: f64) -> f64 {
-    x.round_ties_even()
-}
-
-fn host() -> Result<OwnedTargetIsa, Vec<TargetError>> {
-    let mut flags = settings::builder();
-    let verifier = if cfg!(debug_assertions) {
-        "true"
-    } else {
-        "false"
-    };
-    for (name, value) in [
-        ("opt_level", "speed"),
-        ("enable_verifier", verifier),
-        ("enable_nan_canonicalization", "true"),
-        // Functions of the IR return as many values as they like.
-        ("enable_multi_ret_implicit_sret", "true"),
-        // A large frame touches every page on its way down, so that it cannot skip the guard page.
-        ("enable_probestack", "true"),
-        ("probestack_strategy", "inline"),
-        ("unwind_info", "false"),
-        ("is_pic", "false"),
-        ("use_colocated_libcalls", "false"),
-    ] {
-        flags.set(name, value).expect("a flag of Cranelift");
-    }
-    let unfit = |what: String| {
-        vec![TargetError {
-            refusal: Refusal::Option,
-            origin: None,
-            message: format!("this computer has no JIT: {what}; use the interpreter"),
-        }]
-    };
-    let isa = cranelift_native::builder().map_err(|what| unfit(what.to_owned()))?;
-    isa.finish(settings::Flags::new(flags))
-        .map_err(|error| unfit(error.to_string()))
+/// Declares a function whose name nothing else has.
+pub(crate) fn declare_one(
+    unit: &mut dyn MachineModule,
+    name: &str,
+    linkage: Linkage,
+    signature: &clif::Signature,
+) -> DeclaredId {
+    let declared = unit.declare_function(name, linkage, signature);
+    declared.expect("names are unique")
 }
 
 /// Declares all functions; the scan is the last.
-fn declare(program: &mut Program<'_>, jit: &mut JITModule) -> Vec<DeclaredId> {
+fn declare(program: &mut Program<'_>, unit: &mut dyn MachineModule) -> Vec<DeclaredId> {
     let order = &program.plan.order;
-    let pointer = jit.target_config().pointer_type();
+    let pointer = unit.target_config().pointer_type();
     let mut declared = Vec::with_capacity(order.len());
     for &id in order {
-        let mut signature = jit.make_signature();
+        let mut signature = unit.make_signature();
         program.signature(id, &mut signature, pointer);
         // Names of users may be anything, so functions go by number.
         let name = format!("f{}", id.as_u32());
-        let function = jit.declare_function(&name, Linkage::Local, &signature);
-        declared.push(function.expect("numbers are unique"));
+        declared.push(declare_one(unit, &name, Linkage::Local, &signature));
         program.declared[id] = declared.last().copied();
     }
     declared
@@ -123,27 +104,27 @@ fn declare(program: &mut Program<'_>, jit: &mut JITModule) -> Vec<DeclaredId> {
 
 fn define(
     program: &Program<'_>,
-    jit: &mut JITModule,
+    unit: &mut dyn MachineModule,
     declared: &[DeclaredId],
-) -> Result<(), Vec<TargetError>> {
-    let mut context = jit.make_context();
+) -> Result<u64, Vec<TargetError>> {
+    let mut context = unit.make_context();
     let mut frontend = FunctionBuilderContext::new();
     let mut stack = SecondaryMap::with_default(0u64);
     for (&id, &function) in program.plan.order.iter().zip(declared) {
-        let pointer = jit.target_config().pointer_type();
-        context.func.signature = jit.make_signature();
+        let pointer = unit.target_config().pointer_type();
+        context.func.signature = unit.make_signature();
         program.signature(id, &mut context.func.signature, pointer);
-        translate(program, jit, id, &mut context.func, &mut frontend);
+        translate(program, unit, id, &mut context.func, &mut frontend);
         let name = &program.module.funcs[id].name;
-        jit.define_function(function, &mut context)
+        unit.define_function(function, &mut context)
             .map_err(|error| refuse(&error, Some(name)))?;
         stack[id] = frame_bytes(&context) + deepest_callee(program.module, id, &stack);
         if stack[id] > MAX_STACK_BYTES {
             return Err(too_deep(name, stack[id]));
         }
-        jit.clear_context(&mut context);
+        unit.clear_context(&mut context);
     }
-    Ok(())
+    Ok(stack[program.module.scan])
 }
 
 fn frame_bytes(context: &Context) -> u64 {
@@ -170,7 +151,7 @@ fn too_deep(name: &str, bytes: u64) -> Vec<TargetError> {
     ))
 }
 
-fn size_error(message: String) -> Vec<TargetError> {
+pub(crate) fn size_error(message: String) -> Vec<TargetError> {
     vec![TargetError {
         refusal: Refusal::Size,
         origin: None,
@@ -180,7 +161,7 @@ fn size_error(message: String) -> Vec<TargetError> {
 
 /// Only limits of size are left when a verified module has been translated; anything else is a
 /// mistake of ours.
-fn refuse(error: &ModuleError, name: Option<&str>) -> Vec<TargetError> {
+pub(crate) fn refuse(error: &ModuleError, name: Option<&str>) -> Vec<TargetError> {
     use cranelift_codegen::CodegenError;
     let what = match error {
         ModuleError::Allocation { err } => err.to_string(),
@@ -193,10 +174,10 @@ fn refuse(error: &ModuleError, name: Option<&str>) -> Vec<TargetError> {
         | ModuleError::DuplicateDefinition(_)
         | ModuleError::InvalidImportDefinition(_)
         | ModuleError::Backend(_)
-        | ModuleError::Flag(_) => panic!("compiler bug in the JIT: {error:?}"),
+        | ModuleError::Flag(_) => panic!("compiler bug in machine code: {error:?}"),
     };
     let place = name.map_or(String::new(), |name| {
-        format!("@{name} is too large for the JIT: ")
+        format!("@{name} is too large for machine code: ")
     });
     size_error(format!("{place}{what}; use the interpreter"))
 }

@@ -4,11 +4,14 @@ use crate::messages::Messages;
 use crate::program::{Compiled, Program, load_stimulus};
 use crate::terminal;
 use clap::ValueEnum;
+use iecc_diag::{Code, Diagnostic};
 use iecc_driver::run::parse_duration;
-use iecc_driver::{Replay, VerilogRequest, VerilogSettings, build_verilog, load, write_artifacts};
+use iecc_driver::{
+    Cpu, Replay, VerilogRequest, VerilogSettings, build_object, build_verilog, load, write_artifacts,
+};
 use std::path::PathBuf;
 
-/// Make hardware of a program
+/// Make hardware or an object file of a program
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -22,31 +25,35 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
 
+    /// Which processors an object file is for [default: generic]
+    #[arg(long, value_enum, help_heading = "Target jit")]
+    cpu: Option<CpuChoice>,
+
     /// Frequency of the hardware's clock in hertz; one scan runs in every clock [default: that of
     /// the board, else 50000000]
-    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "HZ", help_heading = HARDWARE, value_parser = clap::value_parser!(u64).range(1..))]
     clock_hz: Option<u64>,
 
     /// The tick from which the hardware counts all times, such as 1ms or 1us; it changes the
     /// hardware, never the results [default: the finest unit in use]
-    #[arg(long = "tick", value_name = "TIME", value_parser = tick)]
+    #[arg(long = "tick", value_name = "TIME", help_heading = HARDWARE, value_parser = tick)]
     tick_ns: Option<u64>,
 
     /// Make a project for a board, such as de2-115 or hx8k
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help_heading = HARDWARE)]
     board: Option<String>,
 
     /// Which port is on which pin of the board
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = HARDWARE)]
     pins: Option<PathBuf>,
 
     /// What the testbench sets the inputs to, and when: a CSV file as for `iecc run`; scans are one
     /// period of the clock apart
-    #[arg(long, value_name = "FILE", requires = "scans")]
+    #[arg(long, value_name = "FILE", requires = "scans", help_heading = HARDWARE)]
     stimulus: Option<PathBuf>,
 
     /// How many scans the testbench runs with the stimulus
-    #[arg(long, value_name = "N", requires = "stimulus",
+    #[arg(long, value_name = "N", requires = "stimulus", help_heading = HARDWARE,
           value_parser = clap::value_parser!(u64).range(1..))]
     scans: Option<u64>,
 }
@@ -55,7 +62,29 @@ pub(crate) struct Arguments {
 enum TargetChoice {
     /// Verilog for any FPGA
     Verilog,
+    /// Machine code of this kind of computer: an object file to link, and a header for C
+    Jit,
 }
+
+impl TargetChoice {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Verilog => "verilog",
+            Self::Jit => "jit",
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum CpuChoice {
+    /// All of the kind; the same program gives the same file everywhere
+    Generic,
+    /// This one and those that have all its instructions
+    Native,
+}
+
+/// The heading of what only hardware takes.
+const HARDWARE: &str = "Target verilog";
 
 fn tick(text: &str) -> Result<u64, String> {
     match parse_duration(text) {
@@ -66,14 +95,20 @@ fn tick(text: &str) -> Result<u64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
+    if let Some(found) = arguments.misplaced() {
+        return messages.diagnostics.push(found);
+    }
     let Some(Compiled { module, project }) = arguments.program.compile(messages) else {
         return;
     };
-    let Some(request) = arguments.request(&project.verilog, messages) else {
-        return;
-    };
     let made = match arguments.target {
-        TargetChoice::Verilog => build_verilog(module, &request, &messages.map),
+        TargetChoice::Verilog => {
+            let Some(request) = arguments.request(&project.verilog, messages) else {
+                return;
+            };
+            build_verilog(module, &request, &messages.map)
+        }
+        TargetChoice::Jit => build_object(module, arguments.processor()),
     };
     let written = made.and_then(|files| {
         write_artifacts(&arguments.output, &files).map_err(|diagnostic| vec![diagnostic])
@@ -89,6 +124,31 @@ pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
 }
 
 impl Arguments {
+    /// An option that the target would ignore.
+    fn misplaced(&self) -> Option<Diagnostic> {
+        let options: &[(&str, bool)] = match self.target {
+            TargetChoice::Verilog => &[("--cpu", self.cpu.is_some())],
+            TargetChoice::Jit => &[
+                ("--clock-hz", self.clock_hz.is_some()),
+                ("--tick", self.tick_ns.is_some()),
+                ("--board", self.board.is_some()),
+                ("--pins", self.pins.is_some()),
+                ("--stimulus", self.stimulus.is_some()),
+                ("--scans", self.scans.is_some()),
+            ],
+        };
+        let (option, _) = options.iter().find(|(_, given)| *given)?;
+        let message = format!("the target {} has no option {option}", self.target.name());
+        Some(Diagnostic::without_place(Code::E7008, message))
+    }
+
+    fn processor(&self) -> Cpu {
+        match self.cpu {
+            None | Some(CpuChoice::Generic) => Cpu::Generic,
+            Some(CpuChoice::Native) => Cpu::Native,
+        }
+    }
+
     fn request(
         &self,
         project: &VerilogSettings,

@@ -1,4 +1,4 @@
-//! Builds hardware: passes, then the Verilog back end.
+//! Builds files: passes for the target, then its back end.
 
 use crate::comments::source_comments;
 use crate::constants::constants;
@@ -9,6 +9,7 @@ use crate::run::{Schedule, Session, Stimulus};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_ir::analysis::Ranges;
 use iecc_ir::{Module, Region};
+use iecc_jit::{Cpu, Object, ObjectOptions};
 use iecc_passes::{Settings, ranges, ranges_given};
 use iecc_source::SourceMap;
 use iecc_target::{Artifact, Target, region_bytes};
@@ -72,6 +73,16 @@ pub fn build_verilog(
         ..Options::new(clock)
     };
     let files = Verilog.compile(verified(&module), &options);
+    files.map_err(|errors| refusal::to_diagnostics(&module, &errors))
+}
+
+/// The object file of a program for this kind of computer, and its header.
+///
+/// # Errors
+/// All reasons why it cannot be machine code.
+pub fn build_object(mut module: Module, cpu: Cpu) -> Result<Vec<Artifact>, Vec<Diagnostic>> {
+    Pipeline::Software.run(&mut module, &Settings::default());
+    let files = Object.compile(verified(&module), &ObjectOptions { cpu });
     files.map_err(|errors| refusal::to_diagnostics(&module, &errors))
 }
 

@@ -21,12 +21,13 @@ pub mod run;
 pub mod sim;
 mod sources;
 
-pub use build::{Replay, VerilogRequest, build_verilog};
+pub use build::{Replay, VerilogRequest, build_object, build_verilog};
 pub use choices::{Choice, DIALECTS, EDITS, INITS, LEVELS, find as find_choice};
 pub use engine::EngineKind;
 pub use explain::{explain_instruction, list_instructions};
 pub use front::{FrontOptions, TimerBase, check, compile};
 pub use iecc_grammar::st::Dialect;
+pub use iecc_jit::Cpu;
 pub use iecc_sema::logix::{Edits, Init};
 pub use levels::{Level, Levels};
 pub use output::write_artifacts;

@@ -7,7 +7,6 @@ use super::memory::Address;
 use crate::context::ScanContext;
 use crate::plan::Locals;
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlotData, StackSlotKind, types};
-use cranelift_module::Module as _;
 use iecc_ir::Place;
 
 /// Most bytes that are moved without a call.
@@ -58,7 +57,7 @@ impl Translator<'_, '_> {
 
     fn zero(&mut self, base: clif::Value, offset: i32, flags: clif::MemFlagsData, bytes: u64) {
         if bytes > FEW_BYTES {
-            let config = self.jit.target_config();
+            let config = self.unit.target_config();
             let (zero, pointer) = (self.ins().iconst(types::I8, 0), self.pointer);
             let to = self.ins().iadd_imm_s(base, i64::from(offset));
             let len = self.ins().iconst(pointer, bytes as i64);
@@ -114,7 +113,7 @@ impl Translator<'_, '_> {
     }
 
     fn call_move(&mut self, to: &Address, from: &Address, bytes: u64) {
-        let config = self.jit.target_config();
+        let config = self.unit.target_config();
         let pointer = self.pointer;
         let [to, from] = [to, from].map(|at| self.ins().iadd_imm_s(at.base, i64::from(at.offset)));
         let len = self.ins().iconst(pointer, bytes as i64);

@@ -2,7 +2,6 @@
 
 use super::Translator;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
-use cranelift_module::Module as _;
 use iecc_ir::{FuncId, Inst, Place, Value};
 
 impl Translator<'_, '_> {
@@ -39,7 +38,7 @@ impl Translator<'_, '_> {
             return known;
         }
         let id = self.program.declared[callee].expect("callees are declared");
-        let declared = self.jit.declare_func_in_func(id, self.builder.func);
+        let declared = self.unit.declare_func_in_func(id, self.builder.func);
         self.callees.insert(callee, declared);
         declared
     }

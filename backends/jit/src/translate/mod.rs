@@ -18,8 +18,7 @@ use cranelift_codegen::ir::{
 };
 use cranelift_entity::{EntityRef, PrimaryMap, SecondaryMap};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, FunctionBuilderContext, Variable};
-use cranelift_jit::JITModule;
-use cranelift_module::Module as _;
+use cranelift_module::Module as MachineModule;
 use iecc_ir::analysis::Cfg;
 use iecc_ir::{
     Block, FuncId, Function, Inst, InstData, Layout, Local, Module, RefParam, Type, Value,
@@ -31,6 +30,8 @@ pub(crate) struct Program<'m> {
     pub(crate) module: &'m Module,
     pub(crate) layout: &'m Layout,
     pub(crate) plan: &'m Plan,
+    /// Whether rounding to integers is one instruction.
+    pub(crate) has_rounding: bool,
     /// The declared Cranelift function of each IR function.
     pub(crate) declared: SecondaryMap<FuncId, Option<cranelift_module::FuncId>>,
 }
@@ -104,7 +105,7 @@ impl AliasRegions {
 
 struct Translator<'t, 'm> {
     program: &'t Program<'m>,
-    jit: &'t mut JITModule,
+    unit: &'t mut dyn MachineModule,
     id: FuncId,
     func: &'m Function,
     facts: &'t Facts,
@@ -130,12 +131,12 @@ struct Translator<'t, 'm> {
 /// Fills `target`, whose signature is set, with the code of a function.
 pub(crate) fn translate(
     program: &Program<'_>,
-    jit: &mut JITModule,
+    unit: &mut dyn MachineModule,
     id: FuncId,
     target: &mut clif::Function,
     frontend: &mut FunctionBuilderContext,
 ) {
-    let config = jit.target_config();
+    let config = unit.target_config();
     let regions = AliasRegions::new(target);
     let func = &program.module.funcs[id];
     let mut builder = FunctionBuilder::new(target, frontend);
@@ -161,7 +162,7 @@ pub(crate) fn translate(
         local_slot: None,
         budget: builder.declare_var(types::I64),
         fault_exit: None,
-        jit,
+        unit,
         builder,
     };
     translator.blocks[func.entry()] = Some(entry);

@@ -261,9 +261,30 @@ impl Translator<'_, '_> {
         low
     }
 
+    /// To the nearest integer, ties to even; the sign of a 0 may be lost, which no integer shows.
+    /// Without an instruction for it, 2^23 or 2^52 is added and taken away again: numbers of that
+    /// size have no room for a fraction, so the addition rounds. Larger ones have none to begin with.
+    fn nearest(&mut self, x: clif::Value) -> clif::Value {
+        if self.program.has_rounding {
+            return self.ins().nearest(x);
+        }
+        let (ty, limit) = if self.builder.func.dfg.value_type(x) == types::F32 {
+            (Type::F32, u64::from(8_388_608f32.to_bits()))
+        } else {
+            (Type::F64, 4_503_599_627_370_496f64.to_bits())
+        };
+        let limit = self.constant(ty, limit);
+        let size = self.ins().fabs(x);
+        let small = self.ins().fcmp(FloatCC::LessThan, size, limit);
+        let shift = self.ins().fcopysign(limit, x);
+        let moved = self.ins().fadd(x, shift);
+        let rounded = self.ins().fsub(moved, shift);
+        self.ins().select(small, rounded, x)
+    }
+
     fn float_to_sint(&mut self, x: clif::Value, to: Type) -> clif::Value {
         let wide = if to == Type::I64 { to } else { Type::I32 };
-        let rounded = self.ins().nearest(x);
+        let rounded = self.nearest(x);
         let mut number = self.ins().fcvt_to_sint_sat(clif_type(wide), rounded);
         if to != wide {
             let largest = self.constant(wide, to.mask() >> 1);
@@ -276,7 +297,7 @@ impl Translator<'_, '_> {
 
     fn float_to_uint(&mut self, x: clif::Value, to: Type) -> clif::Value {
         let wide = if to == Type::I64 { to } else { Type::I32 };
-        let rounded = self.ins().nearest(x);
+        let rounded = self.nearest(x);
         let mut number = self.ins().fcvt_to_uint_sat(clif_type(wide), rounded);
         if to != wide {
             let largest = self.constant(wide, to.mask());
