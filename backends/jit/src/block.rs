@@ -65,7 +65,8 @@ impl Block {
     /// Bytes of the whole block.
     pub(crate) fn len(&self) -> usize {
         let end = self.locals_at() + self.local_bytes;
-        end.max(Self::STATE + self.readable).next_multiple_of(ALIGNMENT)
+        end.max(Self::STATE + self.readable)
+            .next_multiple_of(ALIGNMENT)
     }
 
     /// A block before the first scan.

@@ -82,3 +82,47 @@ fn explain_lists_instructions_with_what_is_refused() {
     let refused = "JMP             refused: this version of iecc does not compile it yet";
     assert!(lines.contains(&refused));
 }
+
+fn example() -> String {
+    format!("{}/../../examples/ald/ald.L5X", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn an_object_file_comes_with_its_header() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let to = folder.path().to_str().expect("UTF-8");
+    let output = iecc(&["build", "--target", "jit", "-o", to, &example()]);
+    assert_eq!(stderr(&output), "");
+    let expected = format!("{to}/ALD_Reactor.o\n{to}/ALD_Reactor.h\n");
+    assert_eq!(
+        stdout(&output),
+        expected.replace('/', std::path::MAIN_SEPARATOR_STR)
+    );
+}
+
+#[test]
+fn an_option_of_another_target_is_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let to = folder.path().join("out");
+    let to = to.to_str().expect("UTF-8");
+    for (target, option, value) in [
+        ("jit", "--clock-hz", "1000"),
+        ("jit", "--board", "hx8k"),
+        ("verilog", "--cpu", "native"),
+    ] {
+        let output = iecc(&[
+            "build",
+            "--target",
+            target,
+            option,
+            value,
+            "-o",
+            to,
+            &example(),
+        ]);
+        assert_eq!(output.status.code(), Some(1));
+        let message = format!("error[E7008]: the target {target} has no option {option}\n");
+        assert_eq!(stderr(&output).trim_end(), message.trim_end());
+        assert!(!std::path::Path::new(to).exists());
+    }
+}

@@ -233,7 +233,7 @@ codes! {
     E7005 Error "target cannot express a fault";
     E7006 Error "target has no absolute time";
     E7007 Error "program is too large for the target";
-    E7008 Error "option does not fit the program or the board";
+    E7008 Error "option does not fit the program, the target or the board";
     E7009 Error "simulator cannot be started";
     E7010 Error "target cannot express a reference";
 }

@@ -132,7 +132,10 @@ typedef struct @_state {
         }
         let rest = block.len() - Block::STATE - state_len;
         if rest > 0 {
-            let _ = writeln!(text, "    uint8_t rest[{rest}]; /* of use in a scan only */");
+            let _ = writeln!(
+                text,
+                "    uint8_t rest[{rest}]; /* of use in a scan only */"
+            );
         }
         text + "} @_state;\n\n"
     }
