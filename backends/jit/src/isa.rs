@@ -26,7 +26,7 @@ pub(crate) enum Purpose {
 /// The instruction set of this computer.
 pub(crate) fn host(cpu: Cpu, purpose: Purpose) -> Result<OwnedTargetIsa, Vec<TargetError>> {
     let builder = cranelift_native::builder_with_options(cpu == Cpu::Native);
-    let builder = builder.map_err(|what| unfit(what))?;
+    let builder = builder.map_err(unfit)?;
     builder
         .finish(flags(purpose))
         .map_err(|error| unfit(&error.to_string()))

@@ -59,6 +59,9 @@ struct Maker<'m> {
     pointer: clif::Type,
 }
 
+/// Writes the code of a function, given its parameters and the data it uses.
+type Fill<'f> = dyn FnMut(&mut FunctionBuilder<'_>, &[clif::Value], &[clif::GlobalValue]) + 'f;
+
 type Made = Result<(), Vec<TargetError>>;
 
 impl Maker<'_> {
@@ -69,7 +72,7 @@ impl Maker<'_> {
         params: &[clif::Type],
         result: Option<clif::Type>,
         data: &[DataId],
-        fill: &mut dyn FnMut(&mut FunctionBuilder<'_>, &[clif::Value], &[clif::GlobalValue]),
+        fill: &mut Fill<'_>,
     ) -> Made {
         let mut context = self.unit.make_context();
         let mut frontend = FunctionBuilderContext::new();
