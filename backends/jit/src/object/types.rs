@@ -1,7 +1,7 @@
 //! C structs with the layout of the regions, padding written out.
 
 use super::names::{Names, comment};
-use iecc_ir::{Layout, MemType, Module, StructId, Type};
+use iecc_ir::{FieldDef, Layout, MemType, Module, StructId, Type, View};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
@@ -122,7 +122,7 @@ impl<'m> Structs<'m> {
             }
             pad(&mut made, &mut names, offset - at);
             at = offset + size;
-            self.member(&mut made, &member, &field.name, field.ty);
+            self.member(&mut made, &member, field);
             made.members.push((member, offset));
         }
         let rest = made.bytes - at;
@@ -130,16 +130,22 @@ impl<'m> Structs<'m> {
         made
     }
 
-    fn member(&self, made: &mut CStruct, member: &str, name: &str, ty: MemType) {
-        let (element, dimensions) = self.element(ty);
+    fn member(&self, made: &mut CStruct, member: &str, field: &FieldDef) {
+        let (element, dimensions) = self.element(field.ty);
         let type_name = match element {
-            MemType::Scalar(scalar) => scalar_name(scalar),
+            MemType::Scalar(scalar) => scalar_name(scalar, field.view),
             MemType::Struct(id) => &self.known[&id],
             MemType::Array(_) => panic!("elements are no arrays"),
         };
         let _ = write!(made.lines, "    {type_name} {member}{dimensions};");
-        if member != name {
-            let _ = write!(made.lines, " /* {} */", comment(name));
+        let name = (member != field.name).then(|| comment(&field.name));
+        let notes: Vec<&str> = name
+            .as_deref()
+            .into_iter()
+            .chain(unit(field.view))
+            .collect();
+        if !notes.is_empty() {
+            let _ = write!(made.lines, " /* {} */", notes.join("; "));
         }
         made.lines.push('\n');
     }
@@ -152,14 +158,32 @@ fn pad(made: &mut CStruct, names: &mut Names, bytes: u64) {
     }
 }
 
-fn scalar_name(ty: Type) -> &'static str {
-    match ty {
-        Type::I1 => "bool",
-        Type::I8 => "int8_t",
-        Type::I16 => "int16_t",
-        Type::I32 => "int32_t",
-        Type::I64 => "int64_t",
-        Type::F32 => "float",
-        Type::F64 => "double",
+fn scalar_name(ty: Type, view: View) -> &'static str {
+    let signed = match view {
+        View::Unsigned | View::Bits => false,
+        View::Plain | View::Time | View::Date | View::TimeOfDay | View::DateTime => true,
+    };
+    match (ty, signed) {
+        (Type::I1, _) => "bool",
+        (Type::I8, true) => "int8_t",
+        (Type::I8, false) => "uint8_t",
+        (Type::I16, true) => "int16_t",
+        (Type::I16, false) => "uint16_t",
+        (Type::I32, true) => "int32_t",
+        (Type::I32, false) => "uint32_t",
+        (Type::I64, true) => "int64_t",
+        (Type::I64, false) => "uint64_t",
+        (Type::F32, _) => "float",
+        (Type::F64, _) => "double",
+    }
+}
+
+/// What a number counts, where its type does not say.
+fn unit(view: View) -> Option<&'static str> {
+    match view {
+        View::Plain | View::Unsigned | View::Bits => None,
+        View::Time => Some("nanoseconds"),
+        View::Date | View::DateTime => Some("nanoseconds since 1970-01-01"),
+        View::TimeOfDay => Some("nanoseconds since midnight"),
     }
 }
