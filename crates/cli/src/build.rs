@@ -7,7 +7,8 @@ use clap::ValueEnum;
 use iecc_diag::{Code, Diagnostic};
 use iecc_driver::run::parse_duration;
 use iecc_driver::{
-    Cpu, Replay, VerilogRequest, VerilogSettings, build_object, build_verilog, load, write_artifacts,
+    Cpu, Replay, VerilogRequest, VerilogSettings, build_object, build_verilog, load,
+    write_artifacts,
 };
 use std::path::PathBuf;
 
