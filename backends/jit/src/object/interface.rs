@@ -168,7 +168,7 @@ impl Maker<'_> {
 
     /// `const char *fault_place(state)`: where the last fault arose.
     fn fault_place(&mut self, module: &Module) -> Made {
-        let labels = module.origins.values().map(|origin| origin.label.as_str());
+        let labels = module.origins.values().map(|origin| &*origin.label);
         let texts: Vec<&str> = std::iter::once("").chain(labels).collect();
         let last = texts.len() as i64 - 1;
         let data = self.texts(&texts);
