@@ -57,16 +57,16 @@ impl Block {
         self.saved.iter().map(|span| span.len as usize).sum()
     }
 
-    /// Where the locals lie.
+    /// Where the locals lie: behind all that is read as state.
     pub(crate) fn locals_at(&self) -> usize {
-        (self.saved_at() + self.saved_len()).next_multiple_of(ALIGNMENT)
+        let saved_end = self.saved_at() + self.saved_len();
+        let end = saved_end.max(Self::STATE + self.readable);
+        end.next_multiple_of(ALIGNMENT)
     }
 
     /// Bytes of the whole block.
     pub(crate) fn len(&self) -> usize {
-        let end = self.locals_at() + self.local_bytes;
-        end.max(Self::STATE + self.readable)
-            .next_multiple_of(ALIGNMENT)
+        (self.locals_at() + self.local_bytes).next_multiple_of(ALIGNMENT)
     }
 
     /// A block before the first scan.

@@ -42,7 +42,7 @@ pub(crate) struct Writes {
 impl Writes {
     /// Looks at every function of the plan.
     pub(crate) fn new(module: &Module, layout: &Layout, plan: &Plan) -> Self {
-        let mut writes = Self::default();
+        let (mut writes, whole) = (Self::default(), Place::root(Root::State));
         let mut through = SecondaryMap::<FuncId, EntitySet<RefParam>>::new();
         for &id in &plan.order {
             let func = &module.funcs[id];
@@ -52,6 +52,8 @@ impl Writes {
                     Root::Output => writes.add(module, layout, Target::Output, place),
                     Root::Input => panic!("inputs are read-only"),
                     Root::Local(_) => {}
+                    // Anywhere in the state.
+                    Root::Deref { .. } => writes.add(module, layout, Target::State, &whole),
                     Root::Ref(param) => {
                         through[id].insert(param);
                     }
@@ -127,6 +129,7 @@ fn written_places<'f>(
             | InstData::Convert { .. }
             | InstData::Select { .. }
             | InstData::Load { .. }
+            | InstData::Address { .. }
             | InstData::Now
             | InstData::Step { .. } => {}
         }
