@@ -4,7 +4,6 @@
 //! A line holds the ports of one direction as one number, the first port in the lowest bits.
 
 use super::module::ModuleText;
-use super::vector;
 use crate::design::Design;
 use iecc_ir::Type;
 use std::fmt::Write;
@@ -36,7 +35,7 @@ pub(crate) fn emit(design: &Design, text: &ModuleText) -> String {
     };
     format!(
         "// Drives {name} from standard input: a line of inputs, one scan, a line of outputs.\n\
-         module {HARNESS};\n    reg clk, rst;\n    reg [{in_top}:0] in;\n    wire {out_bits}out;{undriven}\n\
+         module {HARNESS};\n    reg clk, rst;\n    reg [{in_top}:0] in;\n    wire [{out_top}:0] out;{undriven}\n\
          \n    {name} scan (\n        .clk(clk), .rst(rst){connections}\n    );\n\
          \n    integer got;\n\
          \n    initial begin\n        clk = 0;\n        rst = 1;\n        in = 0;\n        repeat (4) begin\n            \
@@ -46,7 +45,7 @@ pub(crate) fn emit(design: &Design, text: &ModuleText) -> String {
          got = $fscanf(32'h8000_0000, \"%h\", in);\n        end\n        $finish(0);\n    end\nendmodule\n",
         name = text.name,
         in_top = total(&inputs) - 1,
-        out_bits = vector(total(&outputs)).replace("[0:0] ", ""),
+        out_top = total(&outputs) - 1,
     )
 }
 
