@@ -124,7 +124,7 @@ fn scalar(text: &str, ty: Type) -> Result<u64, String> {
 /// A literal without the name of its type: `16#FF` of `WORD#16#FF`.
 fn untyped(text: &str) -> &str {
     match text.split_once('#') {
-        Some((name, value)) if !name.starts_with(|c: char| c.is_ascii_digit()) => value,
+        Some((name, value)) if name.starts_with(|c: char| c.is_ascii_alphabetic()) => value,
         Some(_) | None => text,
     }
 }
@@ -298,6 +298,8 @@ mod tests {
     #[test]
     fn strings_have_a_length_and_escapes() {
         assert_eq!(read("''", TEXT), Ok(vec![0]));
+        let number = Ok(vec![5, 0x31, 0x36, 0x23, 0x31, 0x46]);
+        assert_eq!(read("'16#1F'", TEXT), number);
         assert_eq!(read("'a$'$41'", TEXT), Ok(vec![3, 0x61, 0x27, 0x41]));
         assert_eq!(read("\"$0041\u{20ac}\"", WIDE), Ok(vec![2, 0x41, 0x20ac]));
         assert!(same(&[1, 0x61], &[1, 0x61, 7, 7, 7, 7], TEXT, 0));
