@@ -155,7 +155,7 @@ impl Body<'_, '_> {
         {
             return self.enabled_value(id, enable, want);
         }
-        if let Some(operand) = self.typed_conversion(callee, arguments, range) {
+        if let Some(operand) = self.typed_conversion(callee, arguments, range, want) {
             return operand;
         }
         match self.callee(callee, range) {

@@ -6,8 +6,12 @@
 
 mod call;
 mod coerce;
+mod convert;
 mod expr;
 mod function;
+mod generic;
+mod intrinsic;
+mod library;
 mod literal;
 mod operand;
 mod operator;

@@ -1,7 +1,7 @@
 //! Names and the ways from them: members, elements, bits, references.
 
 use super::{Body, Operand, OperandKind, Place, Rights};
-use crate::hir::code::{PathStep, Root};
+use crate::hir::code::{BinaryOp, Conversion, ExprKind, PathStep, Root};
 use crate::st::constant::Const;
 use crate::st::elementary::El;
 use crate::st::signature::{Def, PouId, Storage, Var};
@@ -692,9 +692,16 @@ impl Body<'_, '_> {
                 let value = (value >> first) & ((1 << count) - 1);
                 Operand::constant(Const::Int(value), TypeId::of(ty), range)
             }
-            OperandKind::Const(_) | OperandKind::Value(_) | OperandKind::Error => {
-                self.error(Message::E2033, range, "only variables have parts")
+            OperandKind::Value(value) => {
+                let (value, storage) = (*value, el.storage());
+                let by = self.add_const(first, crate::hir::Elementary::Udint, range);
+                let kind = ExprKind::Binary(BinaryOp::ShiftRight, value, by);
+                let value = self.add_expr(kind, storage, range);
+                let kind = ExprKind::Convert(Conversion::Bits, value);
+                let value = self.add_expr(kind, ty.storage(), range);
+                Operand::value(value, TypeId::of(ty), range)
             }
+            OperandKind::Const(_) | OperandKind::Error => Operand::error(range),
         }
     }
 

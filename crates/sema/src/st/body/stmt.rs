@@ -366,6 +366,11 @@ impl Body<'_, '_> {
     ) -> Option<StmtKind> {
         let operand = self.expr(selector, None);
         let ty = self.settle(&operand);
+        let compared = matches!(self.an.types.base(ty), TypeKind::Text { .. })
+            || self.an.types.elementary(ty).is_some_and(El::is_real);
+        if compared && !operand.is_error() {
+            return Some(self.case_by_comparison(operand, arms, otherwise));
+        }
         let whole = match self.an.types.base(ty) {
             TypeKind::Enum(_) => true,
             _ => self.an.types.elementary(ty).is_some_and(|el| !el.is_real()),
@@ -403,6 +408,56 @@ impl Body<'_, '_> {
             arms: made,
             otherwise: otherwise.map_or_else(Vec::new, |block| self.block(block)),
         })
+    }
+
+    /// CASE of strings and reals: labels are compared in their order.
+    fn case_by_comparison(
+        &mut self,
+        selector: Operand,
+        arms: st::List<st::CaseArm>,
+        otherwise: Option<st::Block>,
+    ) -> StmtKind {
+        let selector = self.hold(selector);
+        let mut made = Vec::with_capacity(arms.len());
+        for arm in &self.arena()[arms] {
+            let outer = std::mem::take(&mut self.pending);
+            let mut condition: Option<Operand> = None;
+            for label in &self.arena()[arm.labels] {
+                let next = self.label_condition(&selector, label);
+                condition = Some(match condition {
+                    None => next,
+                    Some(before) => {
+                        let range = next.range;
+                        self.binary_on(st::BinaryOp::Or, before, next, range, None)
+                    }
+                });
+            }
+            let condition = condition.unwrap_or_else(|| Operand::error(arm.range));
+            let mut value = self.condition(&condition);
+            let inner = std::mem::replace(&mut self.pending, outer);
+            if !inner.is_empty() {
+                let kind = crate::hir::code::ExprKind::After(inner, value);
+                value = self.add_expr(kind, crate::hir::Elementary::Bool, arm.range);
+            }
+            made.push((value, self.block(arm.body)));
+        }
+        StmtKind::If {
+            arms: made,
+            otherwise: otherwise.map_or_else(Vec::new, |block| self.block(block)),
+        }
+    }
+
+    fn label_condition(&mut self, selector: &Operand, label: &st::Label) -> Operand {
+        let low = self.expr(label.low, Some(selector.ty));
+        let range = low.range;
+        let Some(high) = label.high else {
+            return self.binary_on(st::BinaryOp::Equal, selector.clone(), low, range, None);
+        };
+        let high = self.expr(high, Some(selector.ty));
+        let above = st::BinaryOp::GreaterEqual;
+        let above = self.binary_on(above, selector.clone(), low, range, None);
+        let below = self.binary_on(st::BinaryOp::LessEqual, selector.clone(), high, range, None);
+        self.binary_on(st::BinaryOp::And, above, below, range, None)
     }
 
     /// The first and last value of a label.

@@ -1,0 +1,585 @@
+//! Calls of the library: overloads, generic names, and what they stand for in a call.
+
+use super::generic::Generic;
+use super::{Body, Operand, OperandKind, Place, Rights};
+use crate::hir::CompareOp;
+use crate::hir::code::{
+    BinaryOp as Op, Call, Conversion, ExprId, ExprKind, PathId, PathStep, Root, StmtKind,
+    UnaryOp as Unary,
+};
+use crate::st::constant::Const;
+use crate::st::elementary::{El, Family};
+use crate::st::signature::{Bindings, NamespaceId, PouId, Var};
+use crate::st::types::{TypeId, TypeKind};
+use iecc_ast::Symbol;
+use iecc_ast::st::{
+    self, Argument, ArgumentKind, BinaryOp, Declarations, ExprKind as Written, SectionKind,
+    TypeKind as WrittenType, UnaryOp, UnitKind,
+};
+use iecc_diag::Code as Message;
+use iecc_source::TextRange;
+
+impl Body<'_, '_> {
+    pub(super) fn library(
+        &mut self,
+        functions: &[PouId],
+        operands: Vec<(ArgumentKind, Operand)>,
+        eno: Option<Argument>,
+        fixed: Option<TypeId>,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        for &function in functions {
+            if let Some(bound) = self.bind(function, &operands, fixed, want) {
+                return self.bound_call(function, bound, operands, eno, range, want);
+            }
+        }
+        let name = self.text(self.an.pou(functions[0]).name);
+        let types: Vec<String> = operands
+            .iter()
+            .map(|(_, operand)| self.type_name(operand.ty))
+            .collect();
+        let message = format!("{name} does not take ({})", types.join(", "));
+        self.error(Message::E3021, range, message)
+    }
+
+    /// What the generic names of a library function stand for with these arguments; `None` if they
+    /// do not fit.
+    pub(super) fn bind(
+        &mut self,
+        function: PouId,
+        operands: &[(ArgumentKind, Operand)],
+        fixed: Option<TypeId>,
+        want: Option<TypeId>,
+    ) -> Option<Bound> {
+        let parameters = self.an.library_parameters(function);
+        let extensible = self.an.pragma(function, "extensible");
+        let mut bound = Bound::default();
+        let mut generics: Vec<(Symbol, Option<TypeId>)> = Vec::new();
+        if let Some(fixed) = fixed {
+            // The type in the name of the function is that of its first generic parameter.
+            let first = parameters.iter().find_map(|parameter| match parameter.ty {
+                ParameterType::Generic(name, class) => Some((name, class)),
+                ParameterType::OpenText { .. } | ParameterType::Written(_) => None,
+            });
+            if let Some((name, class)) = first {
+                let el = self.an.types.elementary(fixed);
+                let takes = el.map_or(class.takes_text(), |el| class.takes(el));
+                if !takes {
+                    return None;
+                }
+                if self.an.types.is_scalar(fixed) {
+                    generics.push((name, Some(fixed)));
+                }
+            }
+        }
+        for (index, (kind, operand)) in operands.iter().enumerate() {
+            let position = match kind {
+                ArgumentKind::Positional if extensible => index.min(parameters.len() - 1),
+                ArgumentKind::Positional => index,
+                ArgumentKind::Input(name)
+                | ArgumentKind::Output(name)
+                | ArgumentKind::NegatedOutput(name) => {
+                    parameters.iter().position(|p| p.name == name.name)?
+                }
+            };
+            let parameter = parameters.get(position)?;
+            bound.positions.push(position);
+            match &parameter.ty {
+                ParameterType::Generic(name, class) => {
+                    let known = generics.iter_mut().find(|(known, _)| known == name);
+                    let slot = match known {
+                        Some((_, slot)) => slot,
+                        None => {
+                            generics.push((*name, None));
+                            &mut generics.last_mut().expect("just pushed").1
+                        }
+                    };
+                    let before = *slot;
+                    let joined = self.join(before, operand, *class)?;
+                    if let (Some(fixed), Some((first, _))) = (fixed, generics.first())
+                        && first == name
+                        && joined != Some(fixed)
+                        && self.an.types.is_scalar(fixed)
+                    {
+                        return None;
+                    }
+                    let slot = generics.iter_mut().find(|(known, _)| known == name);
+                    slot.expect("found above").1 = joined;
+                }
+                ParameterType::OpenText { wide } => match *self.an.types.base(operand.ty) {
+                    TypeKind::Text { wide: w, .. } if w == *wide => {
+                        let ty = self.an.types.strip(operand.ty);
+                        bound.bindings.open.push((parameter.name, ty));
+                    }
+                    _ => return None,
+                },
+                ParameterType::Written(spec) => {
+                    let ty = self.an.library_type(function, *spec);
+                    if !self.fits(operand, ty) {
+                        return None;
+                    }
+                }
+            }
+        }
+        for parameter in &parameters {
+            if let ParameterType::Generic(name, class) = parameter.ty {
+                let ty = generics.iter().find(|(known, _)| *known == name);
+                let ty = ty.and_then(|(_, ty)| *ty);
+                let ty = ty.or_else(|| self.open_generic(class, operands, want))?;
+                if !bound
+                    .bindings
+                    .generics
+                    .iter()
+                    .any(|(known, _)| *known == name)
+                {
+                    bound.bindings.generics.push((name, ty));
+                }
+            }
+        }
+        Some(bound)
+    }
+
+    /// The type of a generic name after one more argument. Literals leave it open.
+    pub(super) fn join(
+        &mut self,
+        known: Option<TypeId>,
+        operand: &Operand,
+        class: Generic,
+    ) -> Option<Option<TypeId>> {
+        if matches!(operand.ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL) {
+            let fits = match known.and_then(|ty| self.an.types.elementary(ty)) {
+                Some(el) => el.is_real() || operand.ty == TypeId::UNTYPED_INT,
+                None => class.takes_literal(operand.ty),
+            };
+            return fits.then_some(known);
+        }
+        let ty = self.an.types.strip(operand.ty);
+        let own = match self.an.types.elementary(ty) {
+            Some(el) if class.takes(el) => TypeId::of(el),
+            Some(_) => return None,
+            None => match self.an.types.kind(ty) {
+                TypeKind::Text { .. } if class.takes_text() => ty,
+                TypeKind::Enum(_) if class.takes_enum() => ty,
+                _ if class == Generic::Any => ty,
+                _ => return None,
+            },
+        };
+        let Some(known) = known else {
+            return Some(Some(own));
+        };
+        if known == own {
+            return Some(Some(own));
+        }
+        match (
+            self.an.types.elementary(known),
+            self.an.types.elementary(own),
+        ) {
+            (Some(a), Some(b)) => {
+                let common = a.common(b).filter(|el| class.takes(*el))?;
+                Some(Some(TypeId::of(common)))
+            }
+            _ => match (self.an.types.kind(known), self.an.types.kind(own)) {
+                (TypeKind::Text { wide: a, length: m }, TypeKind::Text { wide: b, length: n })
+                    if a == b =>
+                {
+                    Some(Some(if m >= n { known } else { own }))
+                }
+                _ => None,
+            },
+        }
+    }
+
+    /// The type of a generic name with literals only: the wanted one, or that of the literals.
+    pub(super) fn open_generic(
+        &mut self,
+        class: Generic,
+        operands: &[(ArgumentKind, Operand)],
+        want: Option<TypeId>,
+    ) -> Option<TypeId> {
+        let fraction = operands.iter().any(|(_, o)| o.ty == TypeId::UNTYPED_REAL);
+        if let Some(el) = want.and_then(|ty| self.an.types.elementary(ty))
+            && class.takes(el)
+            && (el.is_real() || !fraction)
+            && (el.is_num() || el.is_bits())
+        {
+            return Some(TypeId::of(el));
+        }
+        if class == Generic::Real || (fraction && class.takes(El::Real)) {
+            return Some(TypeId::of(El::Real));
+        }
+        let untyped = operands.iter().find(|(_, o)| o.ty == TypeId::UNTYPED_INT);
+        let settled = untyped.map(|(_, operand)| self.settle(operand))?;
+        let el = self.an.types.elementary(settled)?;
+        if class.takes(el) {
+            return Some(settled);
+        }
+        let value = untyped
+            .and_then(|(_, o)| o.as_const())
+            .and_then(Const::as_int)?;
+        let fits = |el: &&El| class.takes(**el) && !el.is_real() && el.range().1 >= value;
+        El::ALL.iter().find(fits).map(|el| TypeId::of(*el))
+    }
+
+    pub(super) fn bound_call(
+        &mut self,
+        function: PouId,
+        bound: Bound,
+        operands: Vec<(ArgumentKind, Operand)>,
+        eno: Option<Argument>,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        if let Some(name) = self.an.intrinsic(function) {
+            let mut ordered: Vec<(usize, Operand)> = bound
+                .positions
+                .iter()
+                .copied()
+                .zip(operands.into_iter().map(|(_, operand)| operand))
+                .collect();
+            ordered.sort_by_key(|(position, _)| *position);
+            let operands = ordered.into_iter().map(|(_, operand)| operand).collect();
+            let name = name.to_owned();
+            let result = self.an.library_result(function, &bound.bindings).or(want);
+            if let Some(eno) = eno {
+                let place = self.temporary("ENO", TypeId::BOOL);
+                self.eno_to(false, place, &eno);
+            }
+            return self.intrinsic(&name, &bound.bindings, operands, range, result);
+        }
+        if self.constant_only {
+            return self.error(Message::E2030, range, "a constant is needed here");
+        }
+        let instance = self.an.instance(function, bound.bindings);
+        if operands.len() > bound.positions.iter().max().map_or(0, |p| p + 1) {
+            return self.folded_call(instance, operands, range);
+        }
+        let vars: Vec<Var> = self.an.parameters(instance);
+        let arguments = bound
+            .positions
+            .iter()
+            .zip(operands)
+            .map(|(position, (_, operand))| (vars[*position].clone(), operand))
+            .collect();
+        self.finish_call(instance, None, arguments, Vec::new(), eno, range)
+    }
+
+    /// An extensible function with more than two arguments: from the left, two at a time.
+    pub(super) fn folded_call(
+        &mut self,
+        instance: PouId,
+        operands: Vec<(ArgumentKind, Operand)>,
+        range: TextRange,
+    ) -> Operand {
+        let vars = self.an.parameters(instance);
+        let mut operands = operands.into_iter().map(|(_, operand)| operand);
+        let mut result = operands
+            .next()
+            .expect("extensible functions have arguments");
+        for operand in operands {
+            let arguments = vec![(vars[0].clone(), result), (vars[1].clone(), operand)];
+            result = self.finish_call(instance, None, arguments, Vec::new(), None, range);
+        }
+        result
+    }
+
+    /// `INT_TO_REAL(x)` and `ADD_INT(a, b)`: functions with the type of their arguments in the name.
+    pub(super) fn typed_conversion(
+        &mut self,
+        callee: st::Id<st::Expr>,
+        arguments: st::List<Argument>,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Option<Operand> {
+        let Written::Name(name) = self.arena()[callee].kind else {
+            return None;
+        };
+        if self.own_symbol(name) || !self.an.lookup(self.namespace, name).is_empty() {
+            return None;
+        }
+        let (function, source, converts) = self.an.typed_name(name)?;
+        let functions = self.an.library_functions(&function);
+        if functions.is_empty() {
+            return None;
+        }
+        let want = if converts { None } else { want };
+        let mut operands = self.library_arguments(arguments, converts.then_some(source));
+        if operands.iter().any(|(_, operand)| operand.is_error()) {
+            return Some(Operand::error(range));
+        }
+        if let ([(_, operand)], true) = (&mut operands[..], converts) {
+            *operand = self.as_type(operand.clone(), source);
+        }
+        let eno = self.eno_target(arguments);
+        let fixed = (!converts).then_some(source);
+        Some(self.library(&functions, operands, eno, fixed, range, want))
+    }
+
+    /// The arguments of a library function, EN and ENO left out.
+    pub(super) fn library_arguments(
+        &mut self,
+        arguments: st::List<Argument>,
+        want: Option<TypeId>,
+    ) -> Vec<(ArgumentKind, Operand)> {
+        let written: Vec<Argument> = self.arena()[arguments].to_vec();
+        let mut operands = Vec::with_capacity(written.len());
+        for argument in &written {
+            let enable = match argument.kind {
+                ArgumentKind::Positional => false,
+                ArgumentKind::Input(name)
+                | ArgumentKind::Output(name)
+                | ArgumentKind::NegatedOutput(name) => self.is_enable(name.name),
+            };
+            if let Some(value) = argument.value
+                && !enable
+            {
+                operands.push((argument.kind, self.expr(value, want)));
+            }
+        }
+        operands
+    }
+
+    /// Whether an operand becomes one of a type without being asked.
+    pub(super) fn fits(&self, operand: &Operand, to: TypeId) -> bool {
+        let types = &self.an.types;
+        if types.strip(operand.ty) == types.strip(to) {
+            return true;
+        }
+        match (operand.ty, operand.as_const(), types.elementary(to)) {
+            (TypeId::UNTYPED_INT, Some(Const::Int(value)), Some(el)) => {
+                if el.is_real() {
+                    return true;
+                }
+                let (low, high) = el.range();
+                (el.is_int() || el.is_bits()) && (low..=high).contains(value)
+            }
+            (TypeId::UNTYPED_REAL, _, Some(el)) => el.is_real(),
+            (_, Some(Const::Text(units)), Some(El::Char | El::Wchar)) => units.len() == 1,
+            (_, _, Some(el)) => types
+                .elementary(operand.ty)
+                .is_some_and(|own| own.widens_to(el)),
+            (_, _, None) => match (types.base(operand.ty), types.base(to)) {
+                (TypeKind::Text { wide: a, .. }, TypeKind::Text { wide: b, .. }) => a == b,
+                (TypeKind::Null, TypeKind::Reference(..) | TypeKind::Interface(_)) => true,
+                _ => false,
+            },
+        }
+    }
+
+    /// An operand as one of a type; texts keep their length.
+    pub(super) fn as_type(&mut self, operand: Operand, ty: TypeId) -> Operand {
+        if !self.an.types.is_scalar(ty) {
+            return operand;
+        }
+        let range = operand.range;
+        if operand.as_const().is_some() {
+            return match self.constant_to(&operand, ty) {
+                Some(value) => Operand::constant(value, ty, range),
+                None => Operand::error(range),
+            };
+        }
+        let value = self.to_scalar(&operand, ty);
+        Operand::value(value, ty, range)
+    }
+}
+
+/// What the arguments of a library call mean.
+#[derive(Debug, Default)]
+struct Bound {
+    bindings: Bindings,
+    /// The parameter of each argument.
+    positions: Vec<usize>,
+}
+
+/// A parameter of a library function.
+#[derive(Debug, Clone)]
+pub(crate) struct Parameter {
+    name: Symbol,
+    ty: ParameterType,
+}
+
+#[derive(Debug, Clone)]
+enum ParameterType {
+    Generic(Symbol, Generic),
+    OpenText {
+        wide: bool,
+    },
+    /// A type that is not generic.
+    Written(st::Id<st::TypeSpec>),
+}
+impl crate::st::analysis::Analysis<'_> {
+    /// The functions of the library with a name.
+    pub(crate) fn library_functions(&self, name: &str) -> Vec<PouId> {
+        let Some(symbol) = self.names.find(name) else {
+            return Vec::new();
+        };
+        let defs = self.lookup_in(NamespaceId::LIBRARY, symbol);
+        defs.iter()
+            .filter_map(|def| match def {
+                crate::st::signature::Def::Pou(pou) => Some(*pou),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// The parameters of a library function as they are written.
+    pub(super) fn library_parameters(&self, function: PouId) -> Vec<Parameter> {
+        let unit = self.unit(self.pou(function).unit);
+        let UnitKind::Pou(pou) = &unit.kind else {
+            return Vec::new();
+        };
+        let mut parameters = Vec::new();
+        for section in &unit.arena[pou.sections] {
+            let Declarations::Variables(variables) = section.declarations else {
+                continue;
+            };
+            if !matches!(
+                section.kind,
+                SectionKind::Input | SectionKind::InOut | SectionKind::Output
+            ) {
+                continue;
+            }
+            for decl in &unit.arena[variables] {
+                let ty = self.parameter_type(&unit.arena, decl.ty);
+                for ident in &unit.arena[decl.names] {
+                    parameters.push(Parameter {
+                        name: ident.name,
+                        ty: ty.clone(),
+                    });
+                }
+            }
+        }
+        parameters
+    }
+
+    pub(super) fn parameter_type(
+        &self,
+        arena: &st::Arena,
+        ty: st::Id<st::TypeSpec>,
+    ) -> ParameterType {
+        let WrittenType::Named(path) = arena[ty].kind else {
+            return ParameterType::Written(ty);
+        };
+        let Written::Name(name) = arena[path].kind else {
+            return ParameterType::Written(ty);
+        };
+        let text = self.text(name).to_ascii_uppercase();
+        match Generic::ALL.iter().find(|(generic, _)| *generic == text) {
+            Some((_, class)) => ParameterType::Generic(name, *class),
+            None if text == "STRING" => ParameterType::OpenText { wide: false },
+            None if text == "WSTRING" => ParameterType::OpenText { wide: true },
+            None => ParameterType::Written(ty),
+        }
+    }
+
+    /// The result that a library function declares.
+    pub(super) fn library_result(
+        &mut self,
+        function: PouId,
+        bindings: &Bindings,
+    ) -> Option<TypeId> {
+        let pou = self.pou(function);
+        let (unit, namespace) = (pou.unit, pou.namespace);
+        let UnitKind::Pou(written) = &self.unit(unit).kind else {
+            return None;
+        };
+        let scope = crate::st::resolve::TypeScope {
+            unit,
+            namespace,
+            bindings: Some(bindings),
+            pou: None,
+        };
+        written.result.map(|ty| self.type_of_spec(scope, ty))
+    }
+
+    /// A type that a library function names.
+    pub(super) fn library_type(&mut self, function: PouId, spec: st::Id<st::TypeSpec>) -> TypeId {
+        let pou = self.pou(function);
+        let scope = crate::st::resolve::TypeScope {
+            unit: pou.unit,
+            namespace: pou.namespace,
+            bindings: None,
+            pou: None,
+        };
+        self.type_of_spec(scope, spec)
+    }
+
+    /// Whether the library says something of a function.
+    pub(super) fn pragma(&self, function: PouId, word: &str) -> bool {
+        let unit = self.unit(self.pou(function).unit);
+        unit.pragmas.iter().any(|pragma| pragma.text.contains(word))
+    }
+
+    /// The operation a library function stands for.
+    pub(super) fn intrinsic<'s>(&'s self, function: PouId) -> Option<&'s str> {
+        let unit = self.units[self.pou(function).unit.index()].unit;
+        unit.pragmas.iter().find_map(|pragma| {
+            let (_, rest) = pragma.text.split_once("intrinsic")?;
+            let (_, rest) = rest.split_once('\'')?;
+            rest.split_once('\'').map(|(name, _)| name)
+        })
+    }
+
+    /// A library function with its generic names bound.
+    pub(super) fn instance(&mut self, function: PouId, bindings: Bindings) -> PouId {
+        if bindings == Bindings::default() {
+            self.complete(function);
+            return function;
+        }
+        let key = (function, bindings);
+        if let Some(&known) = self.instances.get(&key) {
+            return known;
+        }
+        let mut pou = self.pou(function).clone();
+        pou.bindings = key.1.clone();
+        let made = self.add_pou(pou);
+        self.instances.insert(key, made);
+        self.complete(made);
+        made
+    }
+
+    /// Inputs, outputs and in-outs in order.
+    pub(super) fn parameters(&self, pou: PouId) -> Vec<Var> {
+        let vars = self.pou(pou).vars.iter();
+        vars.filter(|var| {
+            matches!(
+                var.section,
+                SectionKind::Input | SectionKind::Output | SectionKind::InOut
+            )
+        })
+        .cloned()
+        .collect()
+    }
+
+    /// `INT_TO_REAL`: TO_REAL and INT, a conversion. `ADD_INT`: ADD and INT, none.
+    pub(super) fn typed_name(&self, name: Symbol) -> Option<(String, TypeId, bool)> {
+        let text = self.text(name).to_ascii_uppercase();
+        for marker in ["_TO_BCD_", "_BCD_TO_", "_TRUNC_", "_TO_"] {
+            if let Some((source, target)) = text.split_once(marker)
+                && let Some(ty) = self.named_elementary(source)
+            {
+                return Some((format!("{}{target}", &marker[1..]), ty, true));
+            }
+        }
+        let (function, ty) = text.rsplit_once('_')?;
+        Some((function.to_owned(), self.named_elementary(ty)?, false))
+    }
+
+    pub(super) fn named_elementary(&self, name: &str) -> Option<TypeId> {
+        let symbol = self.names.find(name)?;
+        self.elementary_names.get(&symbol).copied()
+    }
+
+    /// A method of a block or class, or of what it extends.
+    pub(crate) fn method(&self, pou: PouId, name: Symbol) -> Option<PouId> {
+        let mut at = Some(pou);
+        while let Some(id) = at {
+            let signature = self.pou(id);
+            if let Some((_, method)) = signature.members.iter().find(|(known, _)| *known == name) {
+                return Some(*method);
+            }
+            at = signature.extends.first().copied();
+        }
+        None
+    }
+}
