@@ -19,6 +19,24 @@ use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
 impl Body<'_, '_> {
+    /// A conversion of a constant by a function with this name, where the value fits.
+    pub(super) fn folded_conversion(
+        &mut self,
+        function: &str,
+        operand: &Operand,
+        range: TextRange,
+    ) -> Option<Operand> {
+        let (target, truncates) = match function.strip_prefix("TRUNC_") {
+            Some(target) => (target, true),
+            None => (function.strip_prefix("TO_")?, false),
+        };
+        let ty = self.an.named_elementary(target)?;
+        let to = self.an.types.elementary(ty)?;
+        let from = self.an.types.elementary(operand.ty)?;
+        let value = fold_conversion(operand.as_const()?, from, to, truncates)?;
+        Some(Operand::constant(value, ty, range))
+    }
+
     /// `convert`, `trunc`: the result type is the wanted one, which the library declares.
     pub(super) fn conversion(
         &mut self,

@@ -1,5 +1,6 @@
 //! Calls of functions and methods, of the user and of the library.
 
+use super::library::Given;
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::CompareOp;
 use crate::hir::code::{
@@ -33,12 +34,11 @@ impl Body<'_, '_> {
         if let Some(value) = self.type_query(first, arguments, range) {
             return value;
         }
-        let operands = self.library_arguments(arguments, None);
-        if operands.iter().any(|(_, operand)| operand.is_error()) {
+        let given = self.library_arguments(arguments, None);
+        if given.has_errors() {
             return Operand::error(range);
         }
-        let eno = self.eno_target(arguments);
-        self.library(functions, operands, eno, None, range, want)
+        self.library(functions, given, range, want)
     }
 
     /// A call of a library function by its name, made by the compiler.
@@ -54,11 +54,7 @@ impl Body<'_, '_> {
             let message = format!("the library has no {name} yet");
             return self.error(Message::E2010, range, message);
         }
-        let operands = operands
-            .into_iter()
-            .map(|operand| (ArgumentKind::Positional, operand))
-            .collect();
-        self.library(&functions, operands, None, None, range, want)
+        self.library(&functions, Given::positional(operands), range, want)
     }
 
     /// A call of a function or method of the user.
@@ -354,11 +350,7 @@ impl Body<'_, '_> {
             );
             return;
         }
-        let operands = vec![
-            (ArgumentKind::Positional, to),
-            (ArgumentKind::Positional, from),
-        ];
-        let result = self.library(&functions, operands, None, None, range, None);
+        let result = self.library(&functions, Given::positional([to, from]), range, None);
         if let OperandKind::Value(value) = result.kind {
             self.before(StmtKind::Eval(value), range);
         }

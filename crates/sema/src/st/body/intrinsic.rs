@@ -53,7 +53,13 @@ impl Body<'_, '_> {
             _ if name.starts_with("convert") || name.starts_with("trunc") => {
                 self.conversion(name, next(), want, range)
             }
-            "length" => self.length(next(), range),
+            "length" => {
+                let length = self.length(next(), range);
+                match want {
+                    Some(ty) => self.convert_length(length, ty, range),
+                    None => length,
+                }
+            }
             "set_length" => self.set_length(next(), next(), range),
             "mux" => {
                 let which = next();
@@ -192,6 +198,21 @@ impl Body<'_, '_> {
         Operand::value(value, TypeId::of(El::Dint), range)
     }
 
+    fn convert_length(&mut self, length: Operand, ty: TypeId, range: TextRange) -> Operand {
+        let Some(el) = self.an.types.elementary(ty) else {
+            return length;
+        };
+        if length.is_error() {
+            return length;
+        }
+        if let Some(value) = length.as_const() {
+            return Operand::constant(value.clone(), ty, range);
+        }
+        let value = self.raw(&length);
+        let value = self.convert_value(value, el, range);
+        Operand::value(value, ty, range)
+    }
+
     /// Makes a string so many characters long, as far as it has room.
     fn set_length(&mut self, text: Operand, length: Operand, range: TextRange) -> Operand {
         let TypeKind::Text { length: limit, .. } = *self.an.types.base(text.ty) else {
@@ -273,6 +294,19 @@ impl Body<'_, '_> {
         let el = self.an.types.elementary(ty).unwrap_or(El::Real);
         if op == Unary::Absolute && el.family() == Family::Unsigned {
             return operand;
+        }
+        if operand.as_const().is_some() {
+            return match self.constant_to(&operand, ty) {
+                Some(Const::Int(value)) => self.folded(Const::Int(value.abs()), ty, range),
+                Some(Const::Real(value)) if op == Unary::Absolute => {
+                    self.folded(Const::Real(value.abs()), ty, range)
+                }
+                Some(Const::Real(value)) => {
+                    let root = crate::st::constant::round_to(el, value.sqrt());
+                    self.folded(Const::Real(root), ty, range)
+                }
+                Some(_) | None => Operand::error(range),
+            };
         }
         let value = self.to_scalar(&operand, ty);
         let value = self.add_expr(ExprKind::Unary(op, value), el.storage(), range);

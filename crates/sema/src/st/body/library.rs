@@ -23,19 +23,18 @@ impl Body<'_, '_> {
     pub(super) fn library(
         &mut self,
         functions: &[PouId],
-        operands: Vec<(ArgumentKind, Operand)>,
-        eno: Option<Argument>,
-        fixed: Option<TypeId>,
+        given: Given,
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
         for &function in functions {
-            if let Some(bound) = self.bind(function, &operands, fixed, want) {
-                return self.bound_call(function, bound, operands, eno, range, want);
+            if let Some(bound) = self.bind(function, &given, want) {
+                return self.bound_call(function, bound, given, range, want);
             }
         }
         let name = self.text(self.an.pou(functions[0]).name);
-        let types: Vec<String> = operands
+        let types: Vec<String> = given
+            .operands
             .iter()
             .map(|(_, operand)| self.type_name(operand.ty))
             .collect();
@@ -48,10 +47,10 @@ impl Body<'_, '_> {
     pub(super) fn bind(
         &mut self,
         function: PouId,
-        operands: &[(ArgumentKind, Operand)],
-        fixed: Option<TypeId>,
+        given: &Given,
         want: Option<TypeId>,
     ) -> Option<Bound> {
+        let (operands, fixed) = (&given.operands[..], given.fixed);
         let parameters = self.an.library_parameters(function);
         let extensible = self.an.pragma(function, "extensible");
         let mut bound = Bound::default();
@@ -225,11 +224,16 @@ impl Body<'_, '_> {
         &mut self,
         function: PouId,
         bound: Bound,
-        operands: Vec<(ArgumentKind, Operand)>,
-        eno: Option<Argument>,
+        given: Given,
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
+        let Given {
+            operands,
+            outputs,
+            eno,
+            ..
+        } = given;
         if let Some(name) = self.an.intrinsic(function) {
             let mut ordered: Vec<(usize, Operand)> = bound
                 .positions
@@ -238,8 +242,8 @@ impl Body<'_, '_> {
                 .zip(operands.into_iter().map(|(_, operand)| operand))
                 .collect();
             ordered.sort_by_key(|(position, _)| *position);
-            let operands = ordered.into_iter().map(|(_, operand)| operand).collect();
             let name = name.to_owned();
+            let operands = self.typed_operands(function, ordered);
             let result = self.an.library_result(function, &bound.bindings).or(want);
             if let Some(eno) = eno {
                 let place = self.temporary("ENO", TypeId::BOOL);
@@ -261,7 +265,29 @@ impl Body<'_, '_> {
             .zip(operands)
             .map(|(position, (_, operand))| (vars[*position].clone(), operand))
             .collect();
-        self.finish_call(instance, None, arguments, Vec::new(), eno, range)
+        let outputs = outputs
+            .into_iter()
+            .filter_map(|(name, argument)| {
+                let var = vars.iter().find(|var| var.name == name.name)?;
+                Some((var.clone(), argument))
+            })
+            .collect();
+        self.finish_call(instance, None, arguments, outputs, eno, range)
+    }
+
+    /// Operands of an intrinsic in the types that the library writes for them.
+    fn typed_operands(&mut self, function: PouId, operands: Vec<(usize, Operand)>) -> Vec<Operand> {
+        let parameters = self.an.library_parameters(function);
+        let typed = operands.into_iter().map(|(position, operand)| {
+            match parameters.get(position).map(|parameter| &parameter.ty) {
+                Some(ParameterType::Written(spec)) => {
+                    let ty = self.an.library_type(function, *spec);
+                    self.as_type(operand, ty)
+                }
+                Some(ParameterType::Generic(..) | ParameterType::OpenText { .. }) | None => operand,
+            }
+        });
+        typed.collect()
     }
 
     /// An extensible function with more than two arguments: from the left, two at a time.
@@ -303,16 +329,20 @@ impl Body<'_, '_> {
             return None;
         }
         let want = if converts { None } else { want };
-        let mut operands = self.library_arguments(arguments, converts.then_some(source));
-        if operands.iter().any(|(_, operand)| operand.is_error()) {
+        let mut given = self.library_arguments(arguments, converts.then_some(source));
+        if given.has_errors() {
             return Some(Operand::error(range));
         }
-        if let ([(_, operand)], true) = (&mut operands[..], converts) {
+        if let ([(_, operand)], true) = (&mut given.operands[..], converts) {
             *operand = self.as_type(operand.clone(), source);
+            if let Some(folded) = self.folded_conversion(&function, operand, range)
+                && given.eno.is_none()
+            {
+                return Some(folded);
+            }
         }
-        let eno = self.eno_target(arguments);
-        let fixed = (!converts).then_some(source);
-        Some(self.library(&functions, operands, eno, fixed, range, want))
+        given.fixed = (!converts).then_some(source);
+        Some(self.library(&functions, given, range, want))
     }
 
     /// The arguments of a library function, EN and ENO left out.
@@ -320,23 +350,30 @@ impl Body<'_, '_> {
         &mut self,
         arguments: st::List<Argument>,
         want: Option<TypeId>,
-    ) -> Vec<(ArgumentKind, Operand)> {
+    ) -> Given {
         let written: Vec<Argument> = self.arena()[arguments].to_vec();
-        let mut operands = Vec::with_capacity(written.len());
+        let mut given = Given {
+            eno: self.eno_target(arguments),
+            ..Given::default()
+        };
         for argument in &written {
-            let enable = match argument.kind {
-                ArgumentKind::Positional => false,
+            match argument.kind {
                 ArgumentKind::Input(name)
                 | ArgumentKind::Output(name)
-                | ArgumentKind::NegatedOutput(name) => self.is_enable(name.name),
-            };
-            if let Some(value) = argument.value
-                && !enable
-            {
-                operands.push((argument.kind, self.expr(value, want)));
+                | ArgumentKind::NegatedOutput(name)
+                    if self.is_enable(name.name) => {}
+                ArgumentKind::Output(name) | ArgumentKind::NegatedOutput(name) => {
+                    given.outputs.push((name, *argument));
+                }
+                ArgumentKind::Positional | ArgumentKind::Input(_) => {
+                    if let Some(value) = argument.value {
+                        let operand = self.expr(value, want);
+                        given.operands.push((argument.kind, operand));
+                    }
+                }
             }
         }
-        operands
+        given
     }
 
     /// Whether an operand becomes one of a type without being asked.
@@ -380,6 +417,37 @@ impl Body<'_, '_> {
         }
         let value = self.to_scalar(&operand, ty);
         Operand::value(value, ty, range)
+    }
+}
+
+/// The arguments of a library call.
+#[derive(Debug, Default)]
+pub(super) struct Given {
+    /// Inputs and in-outs.
+    pub operands: Vec<(ArgumentKind, Operand)>,
+    /// Outputs, with where they go.
+    pub outputs: Vec<(st::Ident, Argument)>,
+    /// Where ENO goes.
+    pub eno: Option<Argument>,
+    /// The type that the name of the function says.
+    pub fixed: Option<TypeId>,
+}
+
+impl Given {
+    /// Arguments by position.
+    pub(super) fn positional(operands: impl IntoIterator<Item = Operand>) -> Self {
+        let operands = operands.into_iter();
+        Self {
+            operands: operands
+                .map(|operand| (ArgumentKind::Positional, operand))
+                .collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Whether a message has been given for one of them.
+    pub(super) fn has_errors(&self) -> bool {
+        self.operands.iter().any(|(_, operand)| operand.is_error())
     }
 }
 

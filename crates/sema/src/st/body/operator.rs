@@ -605,10 +605,11 @@ impl Body<'_, '_> {
             }
         };
         let storage = el.storage();
-        let (time_value, ty) = (self.raw(time), TypeId::of(el));
+        let ty = TypeId::of(el);
         if factor_el.is_real() {
             let real = El::Lreal;
-            let wide = self.convert_value(time_value, real, range);
+            let wide = self.raw(time);
+            let wide = self.convert_value(wide, real, range);
             let factor = self.to_scalar(factor, TypeId::of(factor_el));
             let factor = self.convert_value(factor, real, range);
             let hir_op = if op == BinaryOp::Multiply {
@@ -624,9 +625,14 @@ impl Body<'_, '_> {
         if self.divides_by_zero(op, factor_el, factor) {
             return self.error(Message::E2028, factor.range, "division by zero");
         }
+        if let (Some(Const::Int(a)), Some(Const::Int(b))) = (time.as_const(), factor.as_const()) {
+            let value = fold_int(op, *a, *b).expect("the divisor is not 0");
+            return self.folded(Const::Int(value), ty, range);
+        }
         let constant = factor.as_const().is_some();
         let factor = self.to_scalar(factor, TypeId::of(factor_el));
         let factor = self.convert_value(factor, el, range);
+        let time_value = self.raw(time);
         let hir_op = match op {
             BinaryOp::Multiply => Op::Multiply,
             _ if constant => Op::DivideUnchecked,
