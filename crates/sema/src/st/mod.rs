@@ -157,7 +157,8 @@ impl<'a> Analysis<'a> {
             self.complete(id);
         }
         for &id in &user {
-            if self.pou(id).kind != PouKind::Interface {
+            // With open arrays there is a body for every call.
+            if self.pou(id).kind != PouKind::Interface && !self.has_open_arrays(id) {
                 self.want(id);
             }
         }

@@ -586,7 +586,9 @@ impl Body<'_, '_> {
                     if self.is_enable(name.name) {
                         continue;
                     }
-                    let found = parameters.iter().find(|var| var.name == name.name);
+                    let alias = self.an.parameter_alias(pou, name.name);
+                    let wanted = alias.unwrap_or(name.name);
+                    let found = parameters.iter().find(|var| var.name == wanted);
                     if found.is_none() {
                         self.no_parameter(pou, name, &parameters);
                     }

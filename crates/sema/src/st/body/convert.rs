@@ -1,20 +1,12 @@
 //! Conversions between elementary types that are asked for by name.
 
-use super::{Body, Operand, OperandKind, Place, Rights};
-use crate::hir::CompareOp;
+use super::{Body, Operand};
 use crate::hir::code::{
-    BinaryOp as Op, Call, Conversion, ExprId, ExprKind, PathId, PathStep, Root, StmtKind,
-    UnaryOp as Unary,
+    BinaryOp as Op, Conversion, ExprId, ExprKind,
 };
 use crate::st::constant::Const;
-use crate::st::elementary::{El, Family};
-use crate::st::signature::{Bindings, NamespaceId, PouId, Var};
-use crate::st::types::{TypeId, TypeKind};
-use iecc_ast::Symbol;
-use iecc_ast::st::{
-    self, Argument, ArgumentKind, BinaryOp, Declarations, ExprKind as Written, SectionKind,
-    TypeKind as WrittenType, UnaryOp, UnitKind,
-};
+use crate::st::elementary::El;
+use crate::st::types::TypeId;
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 

@@ -2,18 +2,15 @@
 
 use super::library::Given;
 use super::{Body, Operand, OperandKind, Place, Rights};
-use crate::hir::CompareOp;
 use crate::hir::code::{
-    BinaryOp as Op, Call, Conversion, ExprId, ExprKind, PathId, Root, StmtKind, UnaryOp as Unary,
+    BinaryOp as Op, Call, ExprId, ExprKind, PathId, Root, StmtKind, UnaryOp as Unary,
 };
 use crate::st::constant::Const;
-use crate::st::elementary::{El, Family};
-use crate::st::signature::{Bindings, NamespaceId, PouId, Storage, Var};
+use crate::st::signature::{Bindings, PouId, Var};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{
-    self, Argument, ArgumentKind, BinaryOp, Declarations, ExprKind as Written, SectionKind,
-    TypeKind as WrittenType, UnaryOp, UnitKind,
+    self, Argument, SectionKind,
 };
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
@@ -34,7 +31,7 @@ impl Body<'_, '_> {
         if let Some(value) = self.type_query(first, arguments, range) {
             return value;
         }
-        let given = self.library_arguments(arguments, None);
+        let given = self.library_arguments(first, arguments, None);
         if given.has_errors() {
             return Operand::error(range);
         }
@@ -66,6 +63,10 @@ impl Body<'_, '_> {
         range: TextRange,
     ) -> Operand {
         self.an.complete(callee);
+        let callee = match self.open_instance(callee, arguments, range) {
+            Some(instance) => instance,
+            None => return Operand::error(range),
+        };
         let matched = self.matched(callee, arguments, range);
         self.require_in_outs(callee, &matched, range);
         let (mut given, mut outputs) = (Vec::new(), Vec::new());
@@ -87,6 +88,51 @@ impl Body<'_, '_> {
         }
         let eno = self.eno_target(arguments);
         self.finish_call(callee, place, given, outputs, eno, range)
+    }
+
+    /// The unit itself, or where it has open arrays the one for the arrays of this call; `None` after a
+    /// mistake.
+    pub(super) fn open_instance(
+        &mut self,
+        callee: PouId,
+        arguments: st::List<Argument>,
+        range: TextRange,
+    ) -> Option<PouId> {
+        if !self.an.has_open_arrays(callee) {
+            return Some(callee);
+        }
+        let matched = self.matched(callee, arguments, range);
+        let mut bindings = Bindings::default();
+        for (var, argument) in &matched {
+            let TypeKind::OpenArray {
+                dimensions,
+                element,
+            } = *self.an.types.base(var.ty)
+            else {
+                continue;
+            };
+            let value = argument.value?;
+            let operand = self.place(value, None);
+            if operand.is_error() {
+                return None;
+            }
+            match self.an.types.base(operand.ty) {
+                TypeKind::Array {
+                    dimensions: given,
+                    element: of,
+                } if given.len() == dimensions as usize
+                    && self.an.types.strip(*of) == self.an.types.strip(element) =>
+                {
+                    let ty = self.an.types.strip(operand.ty);
+                    bindings.open.push((var.name, ty));
+                }
+                _ => {
+                    self.mismatch(&operand, var.ty);
+                    return None;
+                }
+            }
+        }
+        Some(self.an.instance(callee, bindings))
     }
 
     /// Writes a call down: omitted inputs take their defaults, outputs go where they are wanted.

@@ -1,19 +1,17 @@
 //! Operations that the library names and the compiler knows.
 
-use super::{Body, Operand, OperandKind, Place, Rights};
+use super::{Body, Operand, OperandKind};
 use crate::hir::CompareOp;
 use crate::hir::code::{
-    BinaryOp as Op, Call, Conversion, ExprId, ExprKind, PathId, PathStep, Root, StmtKind,
+    BinaryOp as Op, ExprId, ExprKind, PathStep, StmtKind,
     UnaryOp as Unary,
 };
 use crate::st::constant::Const;
 use crate::st::elementary::{El, Family};
-use crate::st::signature::{Bindings, NamespaceId, PouId, Var};
+use crate::st::signature::{Bindings, PouId};
 use crate::st::types::{TypeId, TypeKind};
-use iecc_ast::Symbol;
 use iecc_ast::st::{
-    self, Argument, ArgumentKind, BinaryOp, Declarations, ExprKind as Written, SectionKind,
-    TypeKind as WrittenType, UnaryOp, UnitKind,
+    self, Argument, BinaryOp, ExprKind as Written, UnaryOp,
 };
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
@@ -25,6 +23,7 @@ impl Body<'_, '_> {
         name: &str,
         bindings: &Bindings,
         operands: Vec<Operand>,
+        eno: Option<Argument>,
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
@@ -64,7 +63,7 @@ impl Body<'_, '_> {
             "mux" => {
                 let which = next();
                 let inputs = operands.collect();
-                self.multiplex(which, inputs, bindings, range)
+                self.multiplex(which, inputs, bindings, eno, range)
             }
             "now" => {
                 let value = self.add_expr(ExprKind::Now, El::Ltime.storage(), range);
@@ -248,6 +247,7 @@ impl Body<'_, '_> {
         which: Operand,
         inputs: Vec<Operand>,
         bindings: &Bindings,
+        eno: Option<Argument>,
         range: TextRange,
     ) -> Operand {
         let ty = bindings.generics.get(1).map(|(_, ty)| *ty);
@@ -270,12 +270,27 @@ impl Body<'_, '_> {
             arms.push((vec![(number, number)], block));
         }
         let selector = self.raw(&which);
+        let enabled = eno.map(|argument| (argument, self.temporary("ENO", TypeId::BOOL)));
+        let mut otherwise = Vec::new();
+        if let Some((_, flag)) = &enabled {
+            let outer = std::mem::take(&mut self.pending);
+            let inside = Operand::constant(Const::Int(1), TypeId::BOOL, range);
+            self.store(flag, TypeId::BOOL, &inside, range);
+            let set = std::mem::take(&mut self.pending);
+            let outside = Operand::constant(Const::Int(0), TypeId::BOOL, range);
+            self.store(flag, TypeId::BOOL, &outside, range);
+            otherwise = std::mem::replace(&mut self.pending, outer);
+            self.pending.extend(set);
+        }
         let kind = StmtKind::Case {
             selector,
             arms,
-            otherwise: Vec::new(),
+            otherwise,
         };
         self.before(kind, range);
+        if let Some((argument, flag)) = enabled {
+            self.eno_to(true, flag, &argument);
+        }
         Operand {
             kind: OperandKind::Place(place),
             ty,

@@ -1,20 +1,15 @@
 //! Calls of the library: overloads, generic names, and what they stand for in a call.
 
 use super::generic::Generic;
-use super::{Body, Operand, OperandKind, Place, Rights};
-use crate::hir::CompareOp;
-use crate::hir::code::{
-    BinaryOp as Op, Call, Conversion, ExprId, ExprKind, PathId, PathStep, Root, StmtKind,
-    UnaryOp as Unary,
-};
+use super::{Body, Operand};
 use crate::st::constant::Const;
-use crate::st::elementary::{El, Family};
+use crate::st::elementary::El;
 use crate::st::signature::{Bindings, NamespaceId, PouId, Var};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{
-    self, Argument, ArgumentKind, BinaryOp, Declarations, ExprKind as Written, SectionKind,
-    TypeKind as WrittenType, UnaryOp, UnitKind,
+    self, Argument, ArgumentKind, Declarations, ExprKind as Written, SectionKind,
+    TypeKind as WrittenType, UnitKind,
 };
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
@@ -245,19 +240,26 @@ impl Body<'_, '_> {
             let name = name.to_owned();
             let operands = self.typed_operands(function, ordered);
             let result = self.an.library_result(function, &bound.bindings).or(want);
-            if let Some(eno) = eno {
+            // Of these only MUX can fail.
+            if let (Some(eno), false) = (eno, name == "mux") {
                 let place = self.temporary("ENO", TypeId::BOOL);
                 self.eno_to(false, place, &eno);
             }
-            return self.intrinsic(&name, &bound.bindings, operands, range, result);
+            return self.intrinsic(&name, &bound.bindings, operands, eno, range, result);
         }
         if self.constant_only {
             return self.error(Message::E2030, range, "a constant is needed here");
         }
-        let instance = self.an.instance(function, bound.bindings);
-        if operands.len() > bound.positions.iter().max().map_or(0, |p| p + 1) {
-            return self.folded_call(instance, operands, range);
+        if operands.len()
+            > bound
+                .positions
+                .iter()
+                .max()
+                .map_or(0, |position| position + 1)
+        {
+            return self.folded_call(function, operands, range, want);
         }
+        let instance = self.an.instance(function, bound.bindings);
         let vars: Vec<Var> = self.an.parameters(instance);
         let arguments = bound
             .positions
@@ -282,6 +284,9 @@ impl Body<'_, '_> {
             match parameters.get(position).map(|parameter| &parameter.ty) {
                 Some(ParameterType::Written(spec)) => {
                     let ty = self.an.library_type(function, *spec);
+                    if self.an.types.strip(ty) == self.an.types.strip(operand.ty) {
+                        return operand;
+                    }
                     self.as_type(operand, ty)
                 }
                 Some(ParameterType::Generic(..) | ParameterType::OpenText { .. }) | None => operand,
@@ -291,22 +296,23 @@ impl Body<'_, '_> {
     }
 
     /// An extensible function with more than two arguments: from the left, two at a time.
-    pub(super) fn folded_call(
+    fn folded_call(
         &mut self,
-        instance: PouId,
+        function: PouId,
         operands: Vec<(ArgumentKind, Operand)>,
         range: TextRange,
+        want: Option<TypeId>,
     ) -> Operand {
-        let vars = self.an.parameters(instance);
         let mut operands = operands.into_iter().map(|(_, operand)| operand);
-        let mut result = operands
+        let first = operands
             .next()
             .expect("extensible functions have arguments");
-        for operand in operands {
-            let arguments = vec![(vars[0].clone(), result), (vars[1].clone(), operand)];
-            result = self.finish_call(instance, None, arguments, Vec::new(), None, range);
-        }
-        result
+        operands.fold(first, |left, right| {
+            if left.is_error() {
+                return left;
+            }
+            self.library(&[function], Given::positional([left, right]), range, want)
+        })
     }
 
     /// `INT_TO_REAL(x)` and `ADD_INT(a, b)`: functions with the type of their arguments in the name.
@@ -329,7 +335,7 @@ impl Body<'_, '_> {
             return None;
         }
         let want = if converts { None } else { want };
-        let mut given = self.library_arguments(arguments, converts.then_some(source));
+        let mut given = self.library_arguments(functions[0], arguments, converts.then_some(source));
         if given.has_errors() {
             return Some(Operand::error(range));
         }
@@ -348,16 +354,24 @@ impl Body<'_, '_> {
     /// The arguments of a library function, EN and ENO left out.
     pub(super) fn library_arguments(
         &mut self,
+        function: PouId,
         arguments: st::List<Argument>,
         want: Option<TypeId>,
     ) -> Given {
+        let parameters = self.an.library_parameters(function);
         let written: Vec<Argument> = self.arena()[arguments].to_vec();
         let mut given = Given {
             eno: self.eno_target(arguments),
             ..Given::default()
         };
-        for argument in &written {
+        for (index, argument) in written.iter().enumerate() {
+            let output = parameters.get(index).filter(|parameter| parameter.output);
             match argument.kind {
+                ArgumentKind::Positional if output.is_some() => {
+                    let name = output.map_or(self.an.words.eno, |parameter| parameter.name);
+                    let range = argument.range;
+                    given.outputs.push((st::Ident { name, range }, *argument));
+                }
                 ArgumentKind::Input(name)
                 | ArgumentKind::Output(name)
                 | ArgumentKind::NegatedOutput(name)
@@ -463,6 +477,7 @@ struct Bound {
 #[derive(Debug, Clone)]
 pub(crate) struct Parameter {
     name: Symbol,
+    output: bool,
     ty: ParameterType,
 }
 
@@ -512,6 +527,7 @@ impl crate::st::analysis::Analysis<'_> {
                 for ident in &unit.arena[decl.names] {
                     parameters.push(Parameter {
                         name: ident.name,
+                        output: section.kind == SectionKind::Output,
                         ty: ty.clone(),
                     });
                 }
@@ -538,6 +554,23 @@ impl crate::st::analysis::Analysis<'_> {
             None if text == "WSTRING" => ParameterType::OpenText { wide: true },
             None => ParameterType::Written(ty),
         }
+    }
+
+    /// The parameter of a library unit that has this as its second name.
+    pub(super) fn parameter_alias(&self, pou: PouId, name: Symbol) -> Option<Symbol> {
+        let pou = self.pou(pou);
+        if !self.is_library(pou.unit) {
+            return None;
+        }
+        let quoted = format!("'{}'", self.text(name).to_ascii_uppercase());
+        let pragmas = self.unit(pou.unit).pragmas.iter();
+        let mut aliases = pragmas.filter(|pragma| pragma.text.contains("alias"));
+        let pragma = aliases.find(|pragma| pragma.text.contains(&quoted))?;
+        let behind = pou
+            .vars
+            .iter()
+            .filter(|var| var.range.start >= pragma.range.end);
+        behind.min_by_key(|var| var.range.start).map(|var| var.name)
     }
 
     /// The result that a library function declares.
@@ -588,6 +621,12 @@ impl crate::st::analysis::Analysis<'_> {
         })
     }
 
+    /// Whether parameters of a unit are arrays whose bounds are those of the arguments.
+    pub(crate) fn has_open_arrays(&self, pou: PouId) -> bool {
+        let mut vars = self.pou(pou).vars.iter();
+        vars.any(|var| matches!(self.types.base(var.ty), TypeKind::OpenArray { .. }))
+    }
+
     /// A library function with its generic names bound.
     pub(super) fn instance(&mut self, function: PouId, bindings: Bindings) -> PouId {
         if bindings == Bindings::default() {
@@ -600,6 +639,11 @@ impl crate::st::analysis::Analysis<'_> {
         }
         let mut pou = self.pou(function).clone();
         pou.bindings = key.1.clone();
+        pou.state = crate::st::signature::State::Declared;
+        pou.vars.clear();
+        pou.by_name.clear();
+        pou.extends.clear();
+        pou.implements.clear();
         let made = self.add_pou(pou);
         self.instances.insert(key, made);
         self.complete(made);
