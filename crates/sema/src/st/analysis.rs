@@ -51,7 +51,6 @@ pub(crate) struct Words {
     pub en: Symbol,
     pub eno: Symbol,
     pub interval: Symbol,
-    pub single: Symbol,
     pub priority: Symbol,
 }
 

@@ -151,7 +151,7 @@ impl Analysis<'_> {
         let total: u64 = dimensions.iter().map(|d| u64::from(extent(*d))).product();
         let mut runs: Vec<(u64, u64, Option<InitId>)> = Vec::new();
         let mut at = 0u64;
-        self.element_values(scope, values, element, &mut runs, &mut at, total, 0);
+        self.element_values(scope, values, element, &mut runs, &mut at, total);
         if at > total {
             let span = self.span(scope.unit, range);
             let message = format!("the array has {total} elements but {at} values are given");
@@ -165,7 +165,6 @@ impl Analysis<'_> {
         self.nested_runs(&runs, dimensions, 0, total)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "the state of one walk")]
     fn element_values(
         &mut self,
         scope: TypeScope<'_>,
@@ -174,7 +173,6 @@ impl Analysis<'_> {
         runs: &mut Vec<(u64, u64, Option<InitId>)>,
         at: &mut u64,
         total: u64,
-        depth: u32,
     ) {
         let arena = &self.unit(scope.unit).arena;
         for &value in &arena[values] {
@@ -206,7 +204,7 @@ impl Analysis<'_> {
             let first = *at;
             match inner {
                 Some(inner) => {
-                    self.element_values(scope, inner, element, runs, at, total, depth + 1)
+                    self.element_values(scope, inner, element, runs, at, total);
                 }
                 None => self.called_values(scope, value, element, runs, at),
             }

@@ -9,6 +9,15 @@
 //! there on, which goes with everything: a mistake gives one message. Library units are checked
 //! only where they are used.
 
+#![expect(
+    clippy::wildcard_enum_match_arm,
+    reason = "trees and types have many kinds: whoever names some means all others alike"
+)]
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "operands are handed over: what was looked at is used once"
+)]
+
 mod analysis;
 mod body;
 pub mod constant;
@@ -108,7 +117,6 @@ impl<'a> Analysis<'a> {
                 en: word("EN"),
                 eno: word("ENO"),
                 interval: word("INTERVAL"),
-                single: word("SINGLE"),
                 priority: word("PRIORITY"),
             },
             options,

@@ -157,10 +157,10 @@ impl Analysis<'_> {
     /// The type a path of names stands for.
     pub(crate) fn type_by_path(&mut self, scope: TypeScope<'_>, path: st::Id<st::Expr>) -> TypeId {
         let written = self.unit(scope.unit).arena[path];
-        if let ExprKind::Name(name) = written.kind {
-            if let Some(ty) = self.predefined_type(scope, name) {
-                return ty;
-            }
+        if let ExprKind::Name(name) = written.kind
+            && let Some(ty) = self.predefined_type(scope, name)
+        {
+            return ty;
         }
         let def = self.path(scope.unit, scope.namespace, path);
         let def = def.and_then(|defs| defs.first().copied());

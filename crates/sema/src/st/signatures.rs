@@ -168,7 +168,7 @@ impl Analysis<'_> {
         self.allowed_section(unit_id, kind, section);
         for decl in &unit.arena[variables] {
             let owned = self.pou_scope(id);
-            let ty = self.variable_type(id, owned.as_scope(), decl);
+            let ty = self.variable_type(owned.as_scope(), decl);
             for ident in &unit.arena[decl.names] {
                 let initial = decl.initial.map(|expr| Initial {
                     unit: unit_id,
@@ -210,10 +210,12 @@ impl Analysis<'_> {
             (PouKind::Class, kind) => matches!(kind, S::Var | S::External),
             (_, S::Var | S::Temp | S::Input | S::Output | S::InOut | S::External) => true,
             (_, S::Static | S::Instance) => {
-                return drop(self.unsupported(unit, section.range, section.kind.as_str()));
+                self.unsupported(unit, section.range, section.kind.as_str());
+                return;
             }
             (PouKind::Program, S::Global | S::Access) => {
-                return drop(self.unsupported(unit, section.range, section.kind.as_str()));
+                self.unsupported(unit, section.range, section.kind.as_str());
+                return;
             }
             (_, S::Global | S::Access | S::Config) => false,
         };
@@ -228,7 +230,7 @@ impl Analysis<'_> {
         }
     }
 
-    fn variable_type(&mut self, id: PouId, scope: TypeScope<'_>, decl: &st::VarDecl) -> TypeId {
+    fn variable_type(&mut self, scope: TypeScope<'_>, decl: &st::VarDecl) -> TypeId {
         let unit = self.unit(scope.unit);
         for ident in &unit.arena[decl.names] {
             let open = scope.bindings.map_or(&[][..], |bindings| &bindings.open);
@@ -237,11 +239,11 @@ impl Analysis<'_> {
             }
         }
         let ty = self.type_of_spec(scope, decl.ty);
-        self.complete_contained(id, ty, unit.span(unit.arena[decl.ty].range))
+        self.complete_contained(ty, unit.span(unit.arena[decl.ty].range))
     }
 
     /// Completes the instances inside a type; gives the error type for a cycle.
-    fn complete_contained(&mut self, id: PouId, ty: TypeId, span: iecc_source::Span) -> TypeId {
+    fn complete_contained(&mut self, ty: TypeId, span: iecc_source::Span) -> TypeId {
         let mut at = ty;
         loop {
             match self.types.base(at).clone() {
@@ -272,7 +274,7 @@ impl Analysis<'_> {
                         if self.types.is_scalar(member) {
                             continue;
                         }
-                        if self.complete_contained(id, member, span) == TypeId::ERROR {
+                        if self.complete_contained(member, span) == TypeId::ERROR {
                             return TypeId::ERROR;
                         }
                     }

@@ -209,11 +209,6 @@ impl Types {
         &self.kinds[id.index()]
     }
 
-    /// How many types there are; ids are below.
-    pub fn len(&self) -> usize {
-        self.kinds.len()
-    }
-
     /// Adds an enumeration.
     pub fn add_enum(&mut self, def: EnumDef) -> TypeId {
         self.enums.push(def);

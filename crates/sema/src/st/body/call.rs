@@ -129,7 +129,7 @@ impl Body<'_, '_> {
         };
         match self.callee(callee, written.range) {
             Some(Callee::Block(pou, place)) => {
-                self.block_call(pou, &place, arguments, written.range)
+                self.block_call(pou, &place, arguments, written.range);
             }
             Some(callee) => {
                 let result = self.call_of(callee, arguments, written.range, None);

@@ -46,7 +46,7 @@ impl Body<'_, '_> {
     }
 
     /// The number that a use of a scalar type needs. After a mistake it is 0.
-    pub(crate) fn to_scalar(&mut self, operand: &Operand, to: TypeId) -> ExprId {
+    pub(crate) fn as_scalar(&mut self, operand: &Operand, to: TypeId) -> ExprId {
         let storage = self.an.scalar(to);
         if operand.is_error() || to == TypeId::ERROR {
             return self.add_const(0, storage, operand.range);
@@ -199,7 +199,7 @@ impl Body<'_, '_> {
             return;
         }
         if self.an.types.is_scalar(ty) {
-            let value = self.to_scalar(operand, ty);
+            let value = self.as_scalar(operand, ty);
             let path = self.path_of(target, range);
             self.before(StmtKind::Assign(path, value), range);
             return;
@@ -270,6 +270,6 @@ impl Body<'_, '_> {
 
     /// A condition.
     pub(super) fn condition(&mut self, operand: &Operand) -> ExprId {
-        self.to_scalar(operand, TypeId::BOOL)
+        self.as_scalar(operand, TypeId::BOOL)
     }
 }

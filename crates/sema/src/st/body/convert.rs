@@ -1,9 +1,7 @@
 //! Conversions between elementary types that are asked for by name.
 
 use super::{Body, Operand};
-use crate::hir::code::{
-    BinaryOp as Op, Conversion, ExprId, ExprKind,
-};
+use crate::hir::code::{BinaryOp as Op, Conversion, ExprId, ExprKind};
 use crate::st::constant::Const;
 use crate::st::elementary::El;
 use crate::st::types::TypeId;
@@ -55,7 +53,7 @@ impl Body<'_, '_> {
         {
             return Operand::constant(value, TypeId::of(to), range);
         }
-        let value = self.to_scalar(&operand, from_ty);
+        let value = self.as_scalar(&operand, from_ty);
         let value = self.convert_expr(value, from, to, truncates, range);
         Operand::value(value, TypeId::of(to), range)
     }

@@ -49,7 +49,7 @@ impl Body<'_, '_> {
         ty: TypeId,
     ) -> crate::hir::code::ExprId {
         let operand = self.expr(id, Some(ty));
-        self.to_scalar(&operand, ty)
+        self.as_scalar(&operand, ty)
     }
 
     /// `REF(operand)`.

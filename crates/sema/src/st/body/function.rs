@@ -9,9 +9,7 @@ use crate::st::constant::Const;
 use crate::st::signature::{Bindings, PouId, Var};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
-use iecc_ast::st::{
-    self, Argument, SectionKind,
-};
+use iecc_ast::st::{self, Argument, SectionKind};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
@@ -63,9 +61,8 @@ impl Body<'_, '_> {
         range: TextRange,
     ) -> Operand {
         self.an.complete(callee);
-        let callee = match self.open_instance(callee, arguments, range) {
-            Some(instance) => instance,
-            None => return Operand::error(range),
+        let Some(callee) = self.open_instance(callee, arguments, range) else {
+            return Operand::error(range);
         };
         let matched = self.matched(callee, arguments, range);
         self.require_in_outs(callee, &matched, range);
@@ -183,7 +180,7 @@ impl Body<'_, '_> {
         for &index in &shape.params {
             let var = &pou.vars[index];
             let value = match find(var.name) {
-                Some(operand) => self.to_scalar(&operand, var.ty),
+                Some(operand) => self.as_scalar(&operand, var.ty),
                 None => self.default_argument(var, range),
             };
             args.push(value);
@@ -410,7 +407,7 @@ impl Body<'_, '_> {
         if let Some(crate::hir::code::PathStep::Field(field)) = memory.steps.last_mut() {
             *field += 1;
         }
-        let now = self.to_scalar(operand, TypeId::BOOL);
+        let now = self.as_scalar(operand, TypeId::BOOL);
         let level = match edge {
             st::Edge::Rising => now,
             st::Edge::Falling => {

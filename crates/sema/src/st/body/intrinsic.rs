@@ -2,17 +2,12 @@
 
 use super::{Body, Operand, OperandKind};
 use crate::hir::CompareOp;
-use crate::hir::code::{
-    BinaryOp as Op, ExprId, ExprKind, PathStep, StmtKind,
-    UnaryOp as Unary,
-};
+use crate::hir::code::{BinaryOp as Op, ExprId, ExprKind, PathStep, StmtKind, UnaryOp as Unary};
 use crate::st::constant::Const;
 use crate::st::elementary::{El, Family};
 use crate::st::signature::{Bindings, PouId};
 use crate::st::types::{TypeId, TypeKind};
-use iecc_ast::st::{
-    self, Argument, BinaryOp, ExprKind as Written, UnaryOp,
-};
+use iecc_ast::st::{self, Argument, BinaryOp, ExprKind as Written, UnaryOp};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
@@ -224,9 +219,9 @@ impl Body<'_, '_> {
         steps.push(PathStep::Field(0));
         let (root, el) = (place.root, El::Dint);
         let length = self.hold(length);
-        let mut value = self.to_scalar(&length, TypeId::of(el));
+        let mut value = self.as_scalar(&length, TypeId::of(el));
         for (limit, op) in [(0, CompareOp::Less), (limit, CompareOp::Greater)] {
-            let again = self.to_scalar(&length, TypeId::of(el));
+            let again = self.as_scalar(&length, TypeId::of(el));
             let limit = self.add_const(u64::from(limit), el.storage(), range);
             let kind = ExprKind::Compare(op, again, limit);
             let outside = self.add_expr(kind, crate::hir::Elementary::Bool, range);
@@ -323,7 +318,7 @@ impl Body<'_, '_> {
                 Some(_) | None => Operand::error(range),
             };
         }
-        let value = self.to_scalar(&operand, ty);
+        let value = self.as_scalar(&operand, ty);
         let value = self.add_expr(ExprKind::Unary(op, value), el.storage(), range);
         Operand::value(value, ty, range)
     }
@@ -338,7 +333,7 @@ impl Body<'_, '_> {
     ) -> Operand {
         let ty = ty.unwrap_or(value.ty);
         let el = self.an.types.elementary(ty).unwrap_or(El::Dword);
-        let value = self.to_scalar(&value, ty);
+        let value = self.as_scalar(&value, ty);
         let count = self.shift_count(&count, range);
         let value = self.add_expr(ExprKind::Binary(op, value, count), el.storage(), range);
         Operand::value(value, ty, range)
@@ -382,7 +377,7 @@ impl Body<'_, '_> {
         range: TextRange,
     ) -> Operand {
         let place = self.temporary("sel", ty);
-        let which = self.to_scalar(&which, TypeId::BOOL);
+        let which = self.as_scalar(&which, TypeId::BOOL);
         let outer = std::mem::take(&mut self.pending);
         self.store(&place, ty, &second, range);
         let then = std::mem::take(&mut self.pending);
@@ -413,8 +408,8 @@ impl Body<'_, '_> {
             return self.select_whole(which, first, second, ty, range);
         }
         let storage = self.an.scalar(ty);
-        let which = self.to_scalar(&which, TypeId::BOOL);
-        let (first, second) = (self.to_scalar(&first, ty), self.to_scalar(&second, ty));
+        let which = self.as_scalar(&which, TypeId::BOOL);
+        let (first, second) = (self.as_scalar(&first, ty), self.as_scalar(&second, ty));
         let kind = ExprKind::Select(which, second, first);
         let value = self.add_expr(kind, storage, range);
         Operand::value(value, ty, range)

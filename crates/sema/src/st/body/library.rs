@@ -39,12 +39,7 @@ impl Body<'_, '_> {
 
     /// What the generic names of a library function stand for with these arguments; `None` if they
     /// do not fit.
-    pub(super) fn bind(
-        &mut self,
-        function: PouId,
-        given: &Given,
-        want: Option<TypeId>,
-    ) -> Option<Bound> {
+    fn bind(&mut self, function: PouId, given: &Given, want: Option<TypeId>) -> Option<Bound> {
         let (operands, fixed) = (&given.operands[..], given.fixed);
         let parameters = self.an.library_parameters(function);
         let extensible = self.an.pragma(function, "extensible");
@@ -215,7 +210,7 @@ impl Body<'_, '_> {
         El::ALL.iter().find(fits).map(|el| TypeId::of(*el))
     }
 
-    pub(super) fn bound_call(
+    fn bound_call(
         &mut self,
         function: PouId,
         bound: Bound,
@@ -429,7 +424,7 @@ impl Body<'_, '_> {
                 None => Operand::error(range),
             };
         }
-        let value = self.to_scalar(&operand, ty);
+        let value = self.as_scalar(&operand, ty);
         Operand::value(value, ty, range)
     }
 }
@@ -536,11 +531,7 @@ impl crate::st::analysis::Analysis<'_> {
         parameters
     }
 
-    pub(super) fn parameter_type(
-        &self,
-        arena: &st::Arena,
-        ty: st::Id<st::TypeSpec>,
-    ) -> ParameterType {
+    fn parameter_type(&self, arena: &st::Arena, ty: st::Id<st::TypeSpec>) -> ParameterType {
         let WrittenType::Named(path) = arena[ty].kind else {
             return ParameterType::Written(ty);
         };
@@ -612,7 +603,7 @@ impl crate::st::analysis::Analysis<'_> {
     }
 
     /// The operation a library function stands for.
-    pub(super) fn intrinsic<'s>(&'s self, function: PouId) -> Option<&'s str> {
+    pub(super) fn intrinsic(&self, function: PouId) -> Option<&str> {
         let unit = self.units[self.pou(function).unit.index()].unit;
         unit.pragmas.iter().find_map(|pragma| {
             let (_, rest) = pragma.text.split_once("intrinsic")?;

@@ -51,8 +51,6 @@ pub(crate) enum Rights {
     OwnInput,
     /// It is an output of an instance, seen from outside.
     OtherOutput,
-    /// It is the control variable of a loop around.
-    LoopVariable,
     /// It is an intermediate result.
     Temporary,
 }

@@ -246,7 +246,7 @@ impl Body<'_, '_> {
             BinaryOp::Or => Op::Or,
             _ => Op::Xor,
         };
-        let (left, right) = (self.to_scalar(&left, ty), self.to_scalar(&right, ty));
+        let (left, right) = (self.as_scalar(&left, ty), self.as_scalar(&right, ty));
         let value = self.add_expr(ExprKind::Binary(op, left, right), el.storage(), range);
         Operand::value(value, ty, range)
     }
@@ -284,7 +284,7 @@ impl Body<'_, '_> {
             _ if el.is_real() || right.as_const().is_some() => Op::DivideUnchecked,
             _ => Op::Divide,
         };
-        let (left, right) = (self.to_scalar(&left, ty), self.to_scalar(&right, ty));
+        let (left, right) = (self.as_scalar(&left, ty), self.as_scalar(&right, ty));
         let value = self.add_expr(ExprKind::Binary(hir_op, left, right), el.storage(), range);
         Operand::value(value, ty, range)
     }
@@ -459,7 +459,7 @@ impl Body<'_, '_> {
         if let TypeKind::Text { .. } = self.an.types.base(ty) {
             return self.compare_texts(hir_op, left, right, range);
         }
-        let (left, right) = (self.to_scalar(&left, ty), self.to_scalar(&right, ty));
+        let (left, right) = (self.as_scalar(&left, ty), self.as_scalar(&right, ty));
         let value = self.add_expr(
             ExprKind::Compare(hir_op, left, right),
             crate::hir::Elementary::Bool,
@@ -610,7 +610,7 @@ impl Body<'_, '_> {
             let real = El::Lreal;
             let wide = self.raw(time);
             let wide = self.convert_value(wide, real, range);
-            let factor = self.to_scalar(factor, TypeId::of(factor_el));
+            let factor = self.as_scalar(factor, TypeId::of(factor_el));
             let factor = self.convert_value(factor, real, range);
             let hir_op = if op == BinaryOp::Multiply {
                 Op::Multiply
@@ -630,7 +630,7 @@ impl Body<'_, '_> {
             return self.folded(Const::Int(value), ty, range);
         }
         let constant = factor.as_const().is_some();
-        let factor = self.to_scalar(factor, TypeId::of(factor_el));
+        let factor = self.as_scalar(factor, TypeId::of(factor_el));
         let factor = self.convert_value(factor, el, range);
         let time_value = self.raw(time);
         let hir_op = match op {

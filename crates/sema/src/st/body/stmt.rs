@@ -275,7 +275,7 @@ impl Body<'_, '_> {
             Rights::All | Rights::Temporary if !self.is_loop_variable(&place) => {
                 return Some(place);
             }
-            Rights::All | Rights::Temporary | Rights::LoopVariable => {
+            Rights::All | Rights::Temporary => {
                 "the loop counts in this variable, so its body cannot change it"
             }
             Rights::Constant => "this is a constant",
@@ -285,7 +285,7 @@ impl Body<'_, '_> {
         let code = match place.rights {
             Rights::Constant => Message::E2006,
             Rights::OwnInput | Rights::OtherOutput => Message::E3006,
-            Rights::All | Rights::Temporary | Rights::LoopVariable => Message::E3007,
+            Rights::All | Rights::Temporary => Message::E3007,
         };
         self.error(code, operand.range, why);
         None
@@ -334,7 +334,7 @@ impl Body<'_, '_> {
             self.error(Message::E3009, step.range, "a step of 0 never ends");
         }
         let parts = place.zip(el).map(|(place, el)| {
-            let (from, to) = (self.to_scalar(&from, ty), self.to_scalar(&to, ty));
+            let (from, to) = (self.as_scalar(&from, ty), self.as_scalar(&to, ty));
             let by = match &step {
                 Some(step) => self.loop_step(step, el),
                 None => self.add_const(1, el.storage(), range),
@@ -355,7 +355,7 @@ impl Body<'_, '_> {
     }
 
     fn loop_step(&mut self, step: &Operand, el: El) -> ExprId {
-        self.to_scalar(step, TypeId::of(el))
+        self.as_scalar(step, TypeId::of(el))
     }
 
     fn case(
