@@ -129,6 +129,9 @@ pub struct FieldDef {
     pub ty: MemType,
     /// How people see and write it.
     pub view: View,
+    /// The number that people give the first element in each dimension, the outermost first; those
+    /// left out are 0. Indices in places count from 0 nevertheless.
+    pub lows: Vec<i64>,
 }
 
 impl FieldDef {
@@ -138,6 +141,7 @@ impl FieldDef {
             name: name.into(),
             ty,
             view: View::default(),
+            lows: Vec::new(),
         }
     }
 
@@ -145,6 +149,16 @@ impl FieldDef {
     #[must_use]
     pub fn with_view(mut self, view: View) -> Self {
         self.view = view;
+        self
+    }
+
+    /// The same field, with other numbers of first elements. Zeros at the end are dropped.
+    #[must_use]
+    pub fn with_lows(mut self, mut lows: Vec<i64>) -> Self {
+        while lows.last() == Some(&0) {
+            lows.pop();
+        }
+        self.lows = lows;
         self
     }
 }

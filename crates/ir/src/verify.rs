@@ -6,7 +6,8 @@
 //!     `state`, `input` or `output`.
 //!  2. Arrays have at least one element; each region has at most `MAX_REGION_BYTES`, the locals of all
 //!     functions together have at most `MAX_LOCAL_BYTES`; the image has the size of the state region and `i1` bytes in it are 0 or 1.
-//!     A view fits the scalars of its field; a field of structs has the plain one.
+//!     A view fits the scalars of its field; a field of structs has the plain one. A field has at most as many
+//!     first numbers as dimensions, the last one is not 0, and the numbers of all elements fit `i64`.
 //!  3. `scan` and `prescan` have no parameters and no results.
 //!  4. Aliases are static places of the state.
 //!  5. No function calls itself, directly or through others.
@@ -150,9 +151,23 @@ impl ModuleCheck<'_, '_> {
     }
 
     fn view(&mut self, field: &FieldDef) {
-        let mut ty = field.ty;
+        let (mut ty, mut lows) = (field.ty, field.lows.iter());
         while let MemType::Array(id) = ty {
-            ty = self.module.types.array_type(id).element;
+            let array = self.module.types.array_type(id);
+            let low = lows.next().copied().unwrap_or(0);
+            if low.checked_add(i64::from(array.len)).is_none() {
+                self.error(
+                    2,
+                    format!("elements of field {:?} have no numbers", field.name),
+                );
+            }
+            ty = array.element;
+        }
+        if lows.next().is_some() || field.lows.last() == Some(&0) {
+            self.error(
+                2,
+                format!("field {:?} has too many first numbers", field.name),
+            );
         }
         let fits = match ty {
             MemType::Scalar(scalar) => field.view.fits(scalar),

@@ -126,9 +126,19 @@ fn fields(rng: &mut Rng, memory: &[MemType], table: &mut TypeTable, least: usize
             format!("x{index}")
         };
         let view = random_view(rng, table, ty);
-        fields.push(FieldDef::new(name, ty).with_view(view));
+        let lows = random_lows(rng, table, ty);
+        fields.push(FieldDef::new(name, ty).with_view(view).with_lows(lows));
     }
     fields
+}
+
+fn random_lows(rng: &mut Rng, table: &TypeTable, mut ty: MemType) -> Vec<i64> {
+    let mut lows = Vec::new();
+    while let MemType::Array(id) = ty {
+        lows.push(rng.pick(&[0, 1, -3]));
+        ty = table.array_type(id).element;
+    }
+    lows
 }
 
 fn random_view(rng: &mut Rng, table: &TypeTable, mut ty: MemType) -> View {

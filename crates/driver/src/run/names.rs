@@ -162,12 +162,14 @@ impl<'m> Names<'m> {
                 "`{before}` has no elements to count, or fewer dimensions"
             )));
         };
-        let len = self.module.types.array_type(id).len;
-        match index.parse::<u32>() {
-            Ok(index) if index < len => Ok(place.index(Index::Const(index))),
+        let low = low_of(self.module, &place);
+        let high = low + i64::from(self.module.types.array_type(id).len) - 1;
+        match index.parse::<i64>() {
+            Ok(index) if (low..=high).contains(&index) => {
+                Ok(place.index(Index::Const((index - low) as u32)))
+            }
             Ok(_) => Err(NameError::misfit(format!(
-                "index {index} is outside `{before}`, which has elements 0 to {}",
-                len - 1
+                "index {index} is outside `{before}`, which has elements {low} to {high}"
             ))),
             Err(_) => Err(NameError::misfit(format!(
                 "`{index}` is no index of `{before}`"
@@ -267,6 +269,25 @@ pub(super) fn view_of(module: &Module, place: &Place) -> View {
     }
 }
 
+/// The number that people give the first element of the array at a place of a region.
+fn low_of(module: &Module, array: &Place) -> i64 {
+    let is_field = |step: &Projection| matches!(step, Projection::Field(_));
+    let Some(last) = array.path.iter().rposition(is_field) else {
+        return 0;
+    };
+    let holder = Place {
+        root: array.root,
+        path: array.path[..=last].to_vec(),
+    };
+    let dimension = array.path.len() - last - 1;
+    let field = field_at(module, &holder).map(|(id, field)| {
+        let fields = &module.types.structs[id].fields;
+        &fields[field as usize]
+    });
+    let low = field.and_then(|field| field.lows.get(dimension));
+    low.copied().unwrap_or(0)
+}
+
 /// The values at a place, each with its path below `name`. Times that `elapsed` keeps are left out:
 /// they belong to the machinery, not to the program.
 pub(super) fn leaves(
@@ -289,9 +310,9 @@ pub(super) fn leaves(
     let mut found = Vec::new();
     Layout::new(&module.types).for_each_leaf(&module.types, place, ty, &mut |leaf, _, _| {
         let hidden =
-            leaf.path.len() > base && last_member(module, leaf).is_some_and(|m| kept.contains(&m));
+            leaf.path.len() > base && field_at(module, leaf).is_some_and(|m| kept.contains(&m));
         if !hidden {
-            let name = format!("{name}{}", spell(module, ty, &leaf.path[base..]));
+            let name = format!("{name}{}", spell(module, leaf, base));
             found.push((name, leaf.clone()));
         }
     });
@@ -314,23 +335,23 @@ fn leaf_count(module: &Module, ty: MemType) -> u64 {
     }
 }
 
-fn spell(module: &Module, start: MemType, path: &[Projection]) -> String {
-    let (mut text, mut at) = (String::new(), start);
-    for step in path {
-        match (at, step) {
-            (MemType::Struct(id), Projection::Field(field)) => {
-                let field = &module.types.structs[id].fields[*field as usize];
-                text.push('.');
-                text.push_str(&field.name);
-                at = field.ty;
-            }
-            (MemType::Array(id), Projection::Index(Index::Const(index))) => {
-                text.push_str(&format!("[{index}]"));
-                at = module.types.array_type(id).element;
-            }
-            (_, Projection::Field(_) | Projection::Index(_) | Projection::Bit(_)) => {
-                panic!("leaves are static places")
-            }
+/// The way to a value, from a step on.
+fn spell(module: &Module, leaf: &Place, from: usize) -> String {
+    let mut text = String::new();
+    let mut at = Place {
+        root: leaf.root,
+        path: leaf.path[..from].to_vec(),
+    };
+    for step in &leaf.path[from..] {
+        if let Projection::Index(Index::Const(index)) = step {
+            let index = low_of(module, &at) + i64::from(*index);
+            text.push_str(&format!("[{index}]"));
+        }
+        at.path.push(*step);
+        if let Projection::Field(_) = step {
+            let (id, field) = field_at(module, &at).expect("leaves are static places");
+            text.push('.');
+            text.push_str(&module.types.structs[id].fields[field as usize].name);
         }
     }
     text
@@ -352,7 +373,8 @@ fn kept_times(module: &Module) -> BTreeSet<(StructId, u32)> {
     kept
 }
 
-fn last_member(module: &Module, place: &Place) -> Option<(StructId, u32)> {
+/// The struct and position of the field that a place of a region ends with.
+fn field_at(module: &Module, place: &Place) -> Option<(StructId, u32)> {
     let start = MemType::Struct(region_of(module, place.root)?);
     member_at_end(module, start, &place.path)
 }
@@ -486,5 +508,53 @@ b0:
             error.message,
             "`grid` has 6 values, at most 5 can be shown at once"
         );
+    }
+
+    const FROM: &str = "module m
+struct ROW { cells: [2 x [2 x i16]] from [1, -1], n: i8 }
+state { rows: [2 x ROW] from [5], plain: [2 x i8] }
+input { }
+output { }
+scan @s
+fn @s[]() -> () {
+b0:
+  return
+}
+";
+
+    #[test]
+    fn elements_have_the_numbers_that_people_give_them() {
+        let module = parse_module(FROM).unwrap();
+        iecc_ir::verify(&module).unwrap();
+        let names = Names::to_watch(&module);
+        for (path, expected) in [
+            ("rows[5].cells[1,-1]", "state.rows[0].cells[0][0]"),
+            ("rows[6].cells[2][0].3", "state.rows[1].cells[1][1].3"),
+            ("plain[1]", "state.plain[1]"),
+        ] {
+            assert_eq!(
+                show(&module, &names.find(path).unwrap()),
+                expected,
+                "{path}"
+            );
+        }
+        for (path, expected) in [
+            (
+                "rows[4]",
+                "index 4 is outside `rows`, which has elements 5 to 6",
+            ),
+            (
+                "rows[5].cells[0]",
+                "index 0 is outside `rows[5].cells`, which has elements 1 to 2",
+            ),
+        ] {
+            assert_eq!(names.find(path).unwrap_err().message, expected);
+        }
+        let place = names.find("rows[6]").unwrap();
+        let found = leaves(&module, "rows[6]", &place, 10).unwrap();
+        let found: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+        let cells = ["[1][-1]", "[1][0]", "[2][-1]", "[2][0]"].map(|i| format!("rows[6].cells{i}"));
+        assert_eq!(found[..4], cells);
+        assert_eq!(found[4], "rows[6].n");
     }
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! module demo
 //! struct TIMER { EN: i1, DN: i1, PRE: i32, last: i64 }
-//! state { run: i1, t: TIMER, "Local:2:I": i16 as bits, a: [4 x i32] }
+//! state { run: i1, t: TIMER, "Local:2:I": i16 as bits, a: [4 x i32] from [1] }
 //! input { Start: i1 }
 //! output { Lamp: i1 }
 //! init t.PRE = 2000                        ; scalars that are not 0
@@ -42,7 +42,8 @@
 //! }
 //! ```
 //!
-//! `as` behind the type of a field is how people see its numbers; `plain` is left out. Comments run from `;` to the end of the line. Names that are not plain identifiers stand in
+//! `from` behind the type of a field is the number people give the first element in each dimension; places
+//! count from 0 nevertheless. `as` is how people see its numbers; `plain` is left out. Comments run from `;` to the end of the line. Names that are not plain identifiers stand in
 //! double quotes. `@n` behind an instruction is its origin.
 
 mod lex;

@@ -48,6 +48,9 @@ fn header(out: &mut String, module: &Module) -> fmt::Result {
             let comma = if index == 0 { "" } else { "," };
             write!(out, "{comma} {}: ", Name(&field.name))?;
             mem_type(out, &module.types, field.ty)?;
+            if !field.lows.is_empty() {
+                write!(out, " from {:?}", field.lows)?;
+            }
             if field.view != View::default() {
                 write!(out, " as {}", field.view.name())?;
             }

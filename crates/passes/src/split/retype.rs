@@ -145,6 +145,7 @@ impl Builder<'_> {
             name: field.name.clone(),
             ty: self.keep(field.ty),
             view: field.view,
+            lows: field.lows.clone(),
         });
         let fields = fields.collect();
         let new = self.add(&old.name, fields);

@@ -301,10 +301,21 @@ impl Parser {
             let name = p.name()?;
             p.expect(":")?;
             let ty = p.mem_type(0)?;
+            let lows = p.lows()?;
             let view = p.view()?;
-            Ok(FieldDef { name, ty, view })
+            let field = FieldDef::new(name, ty).with_view(view);
+            Ok(FieldDef { lows, ..field })
         })?;
         Ok(self.types.add_struct(name, fields))
+    }
+
+    /// `from [numbers]`, if it is there.
+    fn lows(&mut self) -> Result<Vec<i64>> {
+        if !self.accept_word("from") {
+            return Ok(Vec::new());
+        }
+        self.expect("[")?;
+        self.list("]", |p| p.number("the number of a first element"))
     }
 
     /// `as view`, if it is there.
