@@ -1,13 +1,13 @@
 //! `iecc build`: a program as files of a target.
 
 use crate::messages::Messages;
-use crate::program::{Compiled, Program, load_stimulus};
+use crate::program::{Program, load_stimulus};
 use crate::terminal;
 use clap::ValueEnum;
 use iecc_diag::{Code, Diagnostic};
 use iecc_driver::run::parse_duration;
 use iecc_driver::{
-    Cpu, Replay, VerilogRequest, VerilogSettings, build_object, build_verilog, load,
+    Compiled, Cpu, Replay, VerilogRequest, VerilogSettings, build_object, build_verilog, load,
     write_artifacts,
 };
 use std::path::PathBuf;
@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
     if let Some(found) = arguments.misplaced() {
         return messages.diagnostics.push(found);
     }
-    let Some(Compiled { module, project }) = arguments.program.compile(messages) else {
+    let Some((Compiled { module, .. }, project)) = arguments.program.compile(messages) else {
         return;
     };
     let made = match arguments.target {

@@ -40,7 +40,7 @@ fn parse_after(text: &str) -> Result<After, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) -> Result<(), NoSuchPlace> {
-    let Some(compiled) = arguments.program.compile(messages) else {
+    let Some((compiled, _)) = arguments.program.compile(messages) else {
         return Ok(());
     };
     terminal::print(&show(

@@ -5,10 +5,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use iecc_diag::Code;
 use iecc_driver::run::Stimulus;
 use iecc_driver::{
-    Choice, DIALECTS, Dialect, EDITS, Edits, Found, FrontOptions, INITS, Init, LEVELS, Level,
-    Levels, Project, Sources, TimerBase, find, find_choice, load,
+    Choice, Compiled, DIALECTS, Dialect, EDITS, Edits, FAULTS, Found, FrontOptions, INITS, Init,
+    LEVELS, Level, Levels, OnFault, Project, Sources, TimerBase, compile_with_tick, find,
+    find_choice, load,
 };
-use iecc_ir::Module;
 use std::path::{Path, PathBuf};
 
 /// The program and choices it does not make.
@@ -27,6 +27,10 @@ pub(crate) struct Program {
     /// Structured Text without a CONFIGURATION: the PROGRAM that runs [default: the only one]
     #[arg(long, value_name = "NAME", help_heading = "Program")]
     entry: Option<String>,
+
+    /// Structured Text: what a wrong index, a division by zero and the like do [default: trap]
+    #[arg(long, value_parser = choice(FAULTS), help_heading = "Program")]
+    on_fault: Option<OnFault>,
 
     /// Logix: what tags hold at the start [default: cold]
     #[arg(long, value_parser = choice(INITS), help_heading = "Program")]
@@ -100,14 +104,6 @@ fn timer_unit(text: &str) -> Result<String, String> {
     TimerBase::default().set(text).map(|()| text.to_owned())
 }
 
-/// A program that compiles.
-pub(crate) struct Compiled {
-    /// Ready for its first scan.
-    pub(crate) module: Module,
-    /// What its project file says.
-    pub(crate) project: Project,
-}
-
 impl Program {
     /// Puts what the command line says over what the project file says.
     fn override_options(&self, options: &mut FrontOptions) {
@@ -117,6 +113,7 @@ impl Program {
             }
         }
         set(&mut options.dialect, self.dialect.as_ref());
+        set(&mut options.on_fault, self.on_fault.as_ref());
         set(&mut options.init, self.init.as_ref());
         set(&mut options.edits, self.edits.as_ref());
         if self.entry.is_some() {
@@ -134,7 +131,7 @@ impl Program {
     }
 
     /// Reads the program and compiles it.
-    pub(crate) fn compile(&self, messages: &mut Messages) -> Option<Compiled> {
+    pub(crate) fn compile(&self, messages: &mut Messages) -> Option<(Compiled, Project)> {
         let (map, diagnostics) = (&mut messages.map, &mut messages.diagnostics);
         let (mut project, paths) = match find(map, &self.paths, diagnostics)? {
             Found::Project(project) => (*project, None),
@@ -146,8 +143,8 @@ impl Program {
             Some(paths) => Sources::load(map, &paths, levels, diagnostics),
             None => project.load(map, levels, diagnostics),
         };
-        let module = iecc_driver::compile(map, &sources?, &project.options, diagnostics)?;
-        Some(Compiled { module, project })
+        let compiled = compile_with_tick(map, &sources?, &project.options, diagnostics)?;
+        Some((compiled, project))
     }
 }
 

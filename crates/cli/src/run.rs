@@ -1,7 +1,7 @@
 //! `iecc run`: scans on an engine, with a stimulus, into traces.
 
 use crate::messages::Messages;
-use crate::program::{Compiled, Program, load_stimulus};
+use crate::program::{Program, load_stimulus};
 use clap::ValueEnum;
 use iecc_diag::Diagnostic;
 use iecc_driver::EngineKind;
@@ -34,7 +34,8 @@ pub(crate) struct Arguments {
     #[arg(long = "for", id = "length", value_name = "TIME", value_parser = time)]
     length_ns: Option<u64>,
 
-    /// The time from one scan to the next [default: 10ms]
+    /// The time from one scan to the next [default: the largest that fits into all intervals of the
+    /// tasks, or 10ms]
     #[arg(long = "period", value_name = "TIME", value_parser = time)]
     period_ns: Option<u64>,
 
@@ -75,12 +76,12 @@ fn time(text: &str) -> Result<u64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
-    let Some(Compiled { module, project }) = arguments.program.compile(messages) else {
+    let Some((compiled, project)) = arguments.program.compile(messages) else {
         return;
     };
     let period_ns = arguments.period_ns.or(project.period_ns);
-    let period_ns = period_ns.unwrap_or(USUAL_PERIOD_NS);
-    let Some((module, session)) = arguments.prepare(module, messages) else {
+    let period_ns = period_ns.or(compiled.tick_ns).unwrap_or(USUAL_PERIOD_NS);
+    let Some((module, session)) = arguments.prepare(compiled.module, messages) else {
         return;
     };
     if let Err(found) = arguments.execute(&module, &session, period_ns) {

@@ -2,6 +2,7 @@
 
 use crate::Level;
 use iecc_grammar::st::Dialect;
+use iecc_lower::OnFault;
 use iecc_sema::logix::{Edits, Init};
 
 /// A value of an option.
@@ -45,6 +46,16 @@ pub const EDITS: &[Choice<Edits>] = &[
     ),
     choice("orig", "The rungs before the edits", Edits::Original),
     choice("test", "The edited rungs", Edits::Test),
+];
+
+/// What errors of the running program do.
+pub const FAULTS: &[Choice<OnFault>] = &[
+    choice("trap", "Abandon the scan", OnFault::Trap),
+    choice(
+        "continue",
+        "Go on with a value that is written down, and remember it",
+        OnFault::Continue,
+    ),
 ];
 
 /// What becomes of warnings.

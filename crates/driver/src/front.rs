@@ -13,8 +13,8 @@ use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_grammar::st::{Dialect, parse_file};
 use iecc_interp::run_prescan;
 use iecc_ir::{Module, verify};
-use iecc_lower::MILLISECOND_NS;
-use iecc_sema::hir::{self, StructKind};
+use iecc_lower::{MILLISECOND_NS, OnFault};
+use iecc_sema::hir::{self, StructKind, Trigger};
 use iecc_sema::{logix, st};
 use iecc_source::{FileId, SourceMap};
 
@@ -29,6 +29,8 @@ pub struct FrontOptions {
     pub timer_base: TimerBase,
     /// Whose Structured Text it is.
     pub dialect: Dialect,
+    /// What errors of the running program do: a wrong index, a division by zero.
+    pub on_fault: OnFault,
     /// What becomes of warnings.
     pub levels: Levels,
     /// The name of the program, in place of the one that its source gives.
@@ -107,7 +109,7 @@ fn misfits(language: Language, options: &FrontOptions, found: &mut Diagnostics) 
             [
                 (options.dialect != usual.dialect, "a dialect"),
                 (options.entry.is_some(), "an entry program"),
-                (false, ""),
+                (options.on_fault != usual.on_fault, "a policy for faults"),
             ],
             "a Logix export",
         ),
@@ -157,6 +159,7 @@ fn check_text(
     st::intern_words(&mut names);
     let options = st::Options {
         codesys: options.dialect == Dialect::Codesys,
+        entry: options.entry.as_deref().map(|entry| names.intern(entry)),
     };
     Some(st::analyze(&library, &files, &names, options, found))
 }
@@ -181,6 +184,16 @@ fn library(map: &SourceMap, sources: &Sources, names: &mut Names) -> Vec<File> {
     library
 }
 
+/// A program that compiles.
+#[derive(Debug, Clone)]
+pub struct Compiled {
+    /// Keeps the rules of the IR; its image is that after prescan.
+    pub module: Module,
+    /// The time from one scan to the next in which no task is late: the largest that all intervals of
+    /// tasks are multiples of. `None` if no task has an interval.
+    pub tick_ns: Option<u64>,
+}
+
 /// Compiles the program to a module that keeps the rules of the IR and whose image is that after
 /// prescan.
 pub fn compile(
@@ -189,8 +202,20 @@ pub fn compile(
     options: &FrontOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<Module> {
+    let compiled = compile_with_tick(map, sources, options, diagnostics)?;
+    Some(compiled.module)
+}
+
+/// As [`compile`], and says what tick the tasks want.
+pub fn compile_with_tick(
+    map: &SourceMap,
+    sources: &Sources,
+    options: &FrontOptions,
+    diagnostics: &mut Diagnostics,
+) -> Option<Compiled> {
     let program = check(map, sources, options, diagnostics)?;
-    let lowering = lower_options(&program, &options.timer_base, diagnostics)?;
+    let tick_ns = tick_ns(&program);
+    let lowering = lower_options(&program, options, diagnostics)?;
     let mut module = iecc_lower::lower(&program, &lowering);
     let verified = match verify(&module) {
         Ok(verified) => verified,
@@ -202,14 +227,30 @@ pub fn compile(
     if let Some(name) = &options.name {
         module.name.clone_from(name);
     }
-    Some(module)
+    Some(Compiled { module, tick_ns })
+}
+
+fn tick_ns(program: &hir::Program) -> Option<u64> {
+    let intervals = program.tasks.iter().filter_map(|task| match task.trigger {
+        Trigger::EveryScan | Trigger::Timed { interval_ns: 0, .. } => None,
+        Trigger::Timed { interval_ns, .. } => Some(interval_ns),
+    });
+    intervals.reduce(greatest_common_divisor)
+}
+
+fn greatest_common_divisor(mut a: u64, mut b: u64) -> u64 {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 fn lower_options(
     program: &hir::Program,
-    base: &TimerBase,
+    options: &FrontOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<iecc_lower::Options> {
+    let base = &options.timer_base;
     let mut timer_units = Vec::with_capacity(base.timers.len());
     for (name, unit_ns) in &base.timers {
         match program.find(name).filter(|place| is_timer(program, place)) {
@@ -223,6 +264,7 @@ fn lower_options(
     (timer_units.len() == base.timers.len()).then_some(iecc_lower::Options {
         timer_unit_ns: base.unit_ns,
         timer_units,
+        on_fault: options.on_fault,
         ..iecc_lower::Options::default()
     })
 }
@@ -230,4 +272,17 @@ fn lower_options(
 fn is_timer(program: &hir::Program, place: &hir::Place) -> bool {
     let kind = program.types.struct_kind(program.type_of(place));
     kind == Some(StructKind::Timer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::greatest_common_divisor;
+
+    #[test]
+    fn the_tick_fits_into_all_intervals() {
+        for (intervals, tick) in [(&[10][..], 10), (&[20, 50], 10), (&[6, 10, 15], 1)] {
+            let found = intervals.iter().copied().reduce(greatest_common_divisor);
+            assert_eq!(found, Some(tick), "{intervals:?}");
+        }
+    }
 }

@@ -22,12 +22,13 @@ pub mod sim;
 mod sources;
 
 pub use build::{Replay, VerilogRequest, build_object, build_verilog};
-pub use choices::{Choice, DIALECTS, EDITS, INITS, LEVELS, find as find_choice};
+pub use choices::{Choice, DIALECTS, EDITS, FAULTS, INITS, LEVELS, find as find_choice};
 pub use engine::EngineKind;
 pub use explain::{explain_instruction, list_instructions};
-pub use front::{FrontOptions, TimerBase, check, compile};
+pub use front::{Compiled, FrontOptions, TimerBase, check, compile, compile_with_tick};
 pub use iecc_grammar::st::Dialect;
 pub use iecc_jit::Cpu;
+pub use iecc_lower::OnFault;
 pub use iecc_sema::logix::{Edits, Init};
 pub use levels::{Level, Levels};
 pub use output::write_artifacts;

@@ -63,7 +63,9 @@ impl<'p> TypeMap<'p> {
 
     fn field(&mut self, name: &str, ty: hir::Type, seen: hir::View) -> FieldDef {
         let view = view(&self.program.types, ty, seen);
-        FieldDef::new(name, self.mem_type(ty)).with_view(view)
+        let lows = lows(&self.program.types, ty);
+        let field = FieldDef::new(name, self.mem_type(ty));
+        field.with_view(view).with_lows(lows)
     }
 
     /// Recursion is bounded by the depth of types.
@@ -121,6 +123,17 @@ fn seen(program: &hir::Program, place: &hir::Place) -> hir::View {
         }
     }
     view
+}
+
+/// The subscripts of the first elements of a field, the outermost first.
+fn lows(types: &hir::Types, mut ty: hir::Type) -> Vec<i64> {
+    let mut lows = Vec::new();
+    while let hir::Type::Array(id) = ty {
+        let array = types.array_def(id);
+        lows.push(array.low);
+        ty = array.element;
+    }
+    lows
 }
 
 /// How the scalars of a field are seen; structures say so themselves.

@@ -3,7 +3,7 @@
 use super::Project;
 use super::read::{Reader, Value};
 use crate::Rename;
-use crate::choices::{DIALECTS, EDITS, INITS, LEVELS};
+use crate::choices::{DIALECTS, EDITS, FAULTS, INITS, LEVELS};
 use iecc_diag::Code;
 use iecc_source::Spanned;
 
@@ -49,6 +49,11 @@ pub(super) const KEYS: &[Key] = &[
     key("dialect", |reader, project, value| {
         if let Some(dialect) = reader.choice(value, DIALECTS) {
             project.options.dialect = dialect;
+        }
+    }),
+    key("on-fault", |reader, project, value| {
+        if let Some(on_fault) = reader.choice(value, FAULTS) {
+            project.options.on_fault = on_fault;
         }
     }),
     key("init", |reader, project, value| {

@@ -2,7 +2,7 @@
 #![expect(clippy::disallowed_methods, reason = "tests write files")]
 
 use super::*;
-use crate::{Dialect, Edits, Init, Level, TimerBase};
+use crate::{Dialect, Edits, Init, Level, OnFault, TimerBase};
 use iecc_diag::Severity;
 use std::fs;
 
@@ -25,6 +25,7 @@ name = "press"
 sources = ["src", "lib/*.st"]
 entry = "Main"
 dialect = "codesys"
+on-fault = "continue"
 init = "export"
 edits = "test"
 timer-base = ["10ms", "t1=1us"]
@@ -57,6 +58,7 @@ pins = "pins.txt"
     assert_eq!(options.name.as_deref(), Some("press"));
     assert_eq!(options.entry.as_deref(), Some("Main"));
     assert_eq!(options.dialect, Dialect::Codesys);
+    assert_eq!(options.on_fault, OnFault::Continue);
     assert_eq!(options.init, Init::Export);
     assert_eq!(options.edits, Edits::Test);
     let timer_base = TimerBase {

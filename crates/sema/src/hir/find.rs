@@ -47,12 +47,14 @@ fn follow(program: &Program, mut place: Place, mut rest: &str) -> Option<Place> 
 
 fn indexes(program: &Program, place: Place, text: &str) -> Option<Place> {
     text.split(',').try_fold(place, |place, index| {
-        let index: u32 = index.trim().parse().ok()?;
+        let index: i64 = index.trim().parse().ok()?;
         match program.type_of(&place) {
-            Type::Array(id) if index < program.types.array_def(id).len => {
-                Some(place.step(Step::Index(index)))
+            Type::Array(id) => {
+                let array = program.types.array_def(id);
+                let index = u32::try_from(index.checked_sub(array.low)?).ok()?;
+                (index < array.len).then(|| place.step(Step::Index(index)))
             }
-            Type::Array(_) | Type::Struct(_) | Type::Elementary(_) => None,
+            Type::Struct(_) | Type::Elementary(_) => None,
         }
     })
 }

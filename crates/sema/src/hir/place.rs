@@ -89,7 +89,9 @@ impl Place {
                     write!(text, ".{}", member.name)
                 }
                 (Type::Array(id), Step::Index(index)) => {
-                    at = types.array_def(id).element;
+                    let array = types.array_def(id);
+                    let index = array.low + i64::from(*index);
+                    at = array.element;
                     if in_index {
                         text.pop();
                         write!(text, ",{index}]")

@@ -220,6 +220,8 @@ pub struct ArrayDef {
     pub element: Type,
     /// How many, at least 1.
     pub len: u32,
+    /// The subscript that users give the first one.
+    pub low: i64,
 }
 
 /// Structures and arrays. A type refers only to types that stand before it.
@@ -237,9 +239,14 @@ impl Types {
         StructId(self.structs.len() as u32 - 1)
     }
 
-    /// The array type, made on first use.
+    /// The array type whose first element users call 0, made on first use.
     pub fn array(&mut self, element: Type, len: u32) -> ArrayId {
-        let wanted = ArrayDef { element, len };
+        self.array_from(element, len, 0)
+    }
+
+    /// The array type whose first element users call `low`, made on first use.
+    pub fn array_from(&mut self, element: Type, len: u32, low: i64) -> ArrayId {
+        let wanted = ArrayDef { element, len, low };
         *self.interned.entry(wanted).or_insert_with(|| {
             self.arrays.push(wanted);
             ArrayId(self.arrays.len() as u32 - 1)

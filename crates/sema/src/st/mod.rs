@@ -36,8 +36,8 @@ pub use elementary::{El, Family};
 
 use crate::hir;
 use analysis::{Analysis, Namespace, Words};
-use iecc_ast::Names;
 use iecc_ast::st::{File, PouKind};
+use iecc_ast::{Names, Symbol};
 use iecc_diag::Diagnostics;
 use resolve::DEFAULT_TEXT;
 use rustc_hash::FxHashMap;
@@ -49,6 +49,8 @@ use types::{TypeId, TypeKind, Types};
 pub struct Options {
     /// Whether the conveniences of CODESYS and TwinCAT are allowed.
     pub codesys: bool,
+    /// The program that runs, where there is no configuration; the only one if `None`.
+    pub entry: Option<Symbol>,
 }
 
 /// Gives names that mean something without being words of the language their symbols. To be

@@ -9,7 +9,7 @@ use crate::hir::code::{
 };
 use crate::hir::{self, Body, Elementary, IoPoint, Place, Step, TagId, Task, Trigger, Type};
 use iecc_ast::st::{self, PouKind, SectionKind, UnitKind};
-use iecc_diag::{Code as Message, Diagnostic};
+use iecc_diag::{Code as Message, Diagnostic, closest};
 
 impl Analysis<'_> {
     /// Makes the tasks and instances; a message if there is nothing to run.
@@ -25,8 +25,20 @@ impl Analysis<'_> {
                     _ => None,
                 });
         match configuration {
-            Some((unit, configuration)) => self.configuration(unit, configuration),
+            Some((unit, configuration)) => {
+                self.no_entry();
+                self.configuration(unit, configuration);
+            }
             None => self.single_program(),
+        }
+    }
+
+    /// Where a configuration says what runs, nobody else does.
+    fn no_entry(&mut self) {
+        if let Some(entry) = self.options.entry {
+            let entry = self.text(entry);
+            let message = format!("`{entry}` is to run, but a CONFIGURATION says what runs");
+            self.report(Diagnostic::without_place(Message::E6020, message));
         }
     }
 
@@ -36,14 +48,7 @@ impl Analysis<'_> {
             .map(PouId)
             .filter(|id| self.pou(*id).kind == PouKind::Program && self.pou(*id).owner.is_none())
             .collect();
-        let [program] = programs[..] else {
-            if programs.is_empty() {
-                // A library of blocks can be checked; there is nothing to run.
-                return;
-            }
-            let span = self.pou(programs[1]).span;
-            let message = "there are several programs but no CONFIGURATION that says which runs";
-            self.report(Diagnostic::new(Message::E6020, span, message));
+        let Some(program) = self.entry(&programs) else {
             return;
         };
         let name = self.text(self.pou(program).name).to_owned();
@@ -57,6 +62,37 @@ impl Analysis<'_> {
             priority: 0,
             calls: vec![call],
         });
+    }
+
+    /// Which of the programs runs; a message if that is open.
+    fn entry(&mut self, programs: &[PouId]) -> Option<PouId> {
+        let diagnostic = match (self.options.entry, programs) {
+            // A library of blocks can be checked; there is nothing to run.
+            (None, []) => return None,
+            (None, [program]) => return Some(*program),
+            (None, [_, second, ..]) => {
+                let message =
+                    "there are several programs but no CONFIGURATION that says which runs";
+                Diagnostic::new(Message::E6020, self.pou(*second).span, message)
+                    .note("`--entry NAME`, or `entry` in the project file, says it as well")
+            }
+            (Some(entry), programs) => {
+                let found = programs.iter().find(|id| self.pou(**id).name == entry);
+                if let Some(program) = found {
+                    return Some(*program);
+                }
+                let names = programs.iter().map(|id| self.text(self.pou(*id).name));
+                let entry = self.text(entry);
+                let message = format!("there is no program `{entry}` to run");
+                let diagnostic = Diagnostic::without_place(Message::E6020, message);
+                match closest(entry, names) {
+                    Some(name) => diagnostic.note(format!("did you mean `{name}`?")),
+                    None => diagnostic,
+                }
+            }
+        };
+        self.report(diagnostic);
+        None
     }
 
     /// The storage of a program instance.

@@ -80,7 +80,7 @@ impl Analysis<'_> {
         } else {
             Type::Array(self.array_storage(inner, element))
         };
-        self.hir.types.array(element, extent(*first))
+        self.hir.types.array_from(element, extent(*first), first.0)
     }
 
     fn text_struct(&mut self, wide: bool, length: u32) -> StructId {
