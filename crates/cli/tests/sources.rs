@@ -146,3 +146,99 @@ fn without_a_project_the_sources_of_the_folder_are_meant() {
     let told = "no file is named, and there is neither a project file `iecc.toml` here or above, nor a source file here";
     assert!(stderr(&output).contains(told), "{}", stderr(&output));
 }
+
+const MAIN: &str = "PROGRAM Main
+VAR_INPUT start : BOOL; END_VAR
+VAR_OUTPUT n : INT; END_VAR
+VAR a : ARRAY[1..3] OF INT := [10, 20, 30]; END_VAR
+n := n + 1;
+a[2] := a[2] + n;
+END_PROGRAM
+";
+const OTHER: &str = "PROGRAM Other\nVAR x : INT; END_VAR\nx := x + 1;\nEND_PROGRAM\n";
+
+/// The trace of a run on the interpreter, or what is said instead.
+fn trace(folder: &Path, arguments: &[&str]) -> String {
+    let run = ["run", "--engine", "interp", "--trace", "t.csv"];
+    let output = iecc(folder, &[&run[..], arguments].concat());
+    if output.status.success() {
+        fs::read_to_string(folder.join("t.csv")).expect("a trace")
+    } else {
+        stderr(&output).to_owned()
+    }
+}
+
+#[test]
+fn names_and_subscripts_are_those_of_the_program() {
+    let folder = folder(&[("main.st", MAIN)]);
+    let expected = "t_ms,start,n,a[1],a[2],a[3]\n0,0,1,10,21,30\n10,0,2,10,23,30\n";
+    let found = trace(folder.path(), &["main.st", "--scans", "2", "--watch", "a"]);
+    assert_eq!(found, expected);
+    let found = trace(
+        folder.path(),
+        &["main.st", "--scans", "1", "--watch", "a[0]"],
+    );
+    assert!(found.contains("which has elements 1 to 3"), "{found}");
+}
+
+#[test]
+fn the_entry_says_which_program_runs() {
+    let folder = folder(&[("main.st", MAIN), ("other.st", OTHER)]);
+    let found = trace(folder.path(), &[".", "--scans", "1"]);
+    assert!(found.starts_with("error[E6020]"), "{found}");
+    let run = [".", "--scans", "1", "--watch", "x", "--entry"];
+    let found = trace(folder.path(), &[&run[..], &["other"]].concat());
+    assert_eq!(found, "t_ms,x\n0,1\n");
+    let found = trace(folder.path(), &[&run[..], &["othr"]].concat());
+    assert!(found.contains("did you mean `Other`?"), "{found}");
+}
+
+#[test]
+fn the_tick_is_that_of_the_tasks_unless_something_says_it() {
+    let tasks = "CONFIGURATION C
+TASK fast(INTERVAL := T#20ms, PRIORITY := 1);
+TASK slow(INTERVAL := T#50ms, PRIORITY := 2);
+PROGRAM p1 WITH fast : Main;
+PROGRAM p2 WITH slow : Other;
+END_CONFIGURATION
+";
+    let folder = folder(&[("main.st", MAIN), ("other.st", OTHER), ("tasks.st", tasks)]);
+    let run = [".", "--scans", "6", "--watch", "p1.n,p2.x"];
+    // p1 runs at 0, 20, 40 and p2 at 0, 50; the tick is 10 ms.
+    let expected = "t_ms,p1.n,p2.x\n0,1,1\n10,1,1\n20,2,1\n30,2,1\n40,3,1\n50,3,2\n";
+    assert_eq!(trace(folder.path(), &run), expected);
+    let found = trace(folder.path(), &[&run[..], &["--period", "50ms"]].concat());
+    assert!(
+        found.starts_with("t_ms,p1.n,p2.x\n0,1,1\n50,2,2\n100,3,3\n"),
+        "{found}"
+    );
+}
+
+#[test]
+fn faults_abandon_the_scan_or_are_remembered() {
+    let text = "PROGRAM Main
+VAR_INPUT i : INT; END_VAR
+VAR_OUTPUT q : INT; END_VAR
+q := 5 / i;
+END_PROGRAM
+";
+    let folder = folder(&[("d.st", text)]);
+    let found = trace(folder.path(), &["d.st", "--scans", "1"]);
+    assert!(
+        found.contains("error[E6014]") && found.contains("d.st:4:6"),
+        "{found}"
+    );
+    let run = [
+        "d.st",
+        "--scans",
+        "1",
+        "--on-fault",
+        "continue",
+        "--watch",
+        "__status",
+    ];
+    assert_eq!(
+        trace(folder.path(), &run),
+        "t_ms,i,q,__status\n0,0,0,16#2\n"
+    );
+}

@@ -150,12 +150,13 @@ fn check_text(
     found: &mut Diagnostics,
 ) -> Option<hir::Program> {
     let mut names = Names::new();
-    let library = library(map, sources, &mut names);
+    // Names keep their first spelling, which is to be the user's.
     let parse = |file: &FileId| {
         let text = map.file(*file).text();
         parse_file(*file, text, options.dialect, &mut names, found)
     };
     let files: Vec<File> = sources.files().iter().map(parse).collect();
+    let library = library(map, sources, &mut names);
     st::intern_words(&mut names);
     let options = st::Options {
         codesys: options.dialect == Dialect::Codesys,
