@@ -7,7 +7,7 @@
 
 use crate::{Block, Function, InstData, Type, Value};
 use cranelift_entity::{EntitySet, PrimaryMap, SecondaryMap, entity_impl};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// A variable that may be assigned many times.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -26,7 +26,7 @@ struct Pending {
 #[derive(Debug, Default)]
 pub struct SsaConstruction {
     types: PrimaryMap<Variable, Type>,
-    definitions: HashMap<(Variable, Block), Value>,
+    definitions: FxHashMap<(Variable, Block), Value>,
     predecessors: SecondaryMap<Block, Vec<Block>>,
     sealed: EntitySet<Block>,
     incomplete: SecondaryMap<Block, Vec<(Variable, usize)>>,
@@ -43,13 +43,14 @@ impl SsaConstruction {
         self.types.push(ty)
     }
 
-    /// Says that `from` jumps to `to`; before `to` is sealed. Saying it twice is harmless.
+    /// Says that `from` jumps to `to`; before `to` is sealed. All jumps of a block are said one after
+    /// the other; saying one twice is harmless.
     pub fn add_edge(&mut self, from: Block, to: Block) {
         debug_assert!(
             !self.sealed.contains(to),
             "sealed blocks get no more predecessors"
         );
-        if !self.predecessors[to].contains(&from) {
+        if self.predecessors[to].last() != Some(&from) {
             self.predecessors[to].push(from);
         }
     }

@@ -1,6 +1,7 @@
 //! Value types, memory types, and the table that owns structs and arrays.
 
 use cranelift_entity::{PrimaryMap, entity_impl};
+use rustc_hash::FxHashMap;
 use std::fmt;
 
 /// The type of an SSA value. Signedness is in the operation, not in the type.
@@ -256,21 +257,21 @@ pub struct ArrayType {
 /// A type only refers to types that stand before it, so types cannot contain themselves.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TypeTable {
-    /// Structs, in order of definition.
+    /// Structs, in order of definition. They are added by `add_struct` and keep their names.
     pub structs: PrimaryMap<StructId, StructDef>,
     arrays: PrimaryMap<ArrayId, ArrayType>,
+    /// The ids of arrays, and of structs by name; of equal names the first.
+    array_ids: FxHashMap<ArrayType, ArrayId>,
+    struct_ids: FxHashMap<String, StructId>,
 }
 
 impl TypeTable {
     /// The id of the array type, made on first use.
     pub fn array(&mut self, element: MemType, len: u32) -> ArrayId {
         let wanted = ArrayType { element, len };
-        let found = self
-            .arrays
-            .iter()
-            .find(|(_, array)| **array == wanted)
-            .map(|(id, _)| id);
-        found.unwrap_or_else(|| self.arrays.push(wanted))
+        let arrays = &mut self.arrays;
+        let known = self.array_ids.entry(wanted);
+        *known.or_insert_with(|| arrays.push(wanted))
     }
 
     /// The array type of an id.
@@ -285,17 +286,17 @@ impl TypeTable {
 
     /// The struct with this name.
     pub fn struct_named(&self, name: &str) -> Option<StructId> {
-        self.structs
-            .iter()
-            .find(|(_, def)| def.name == name)
-            .map(|(id, _)| id)
+        self.struct_ids.get(name).copied()
     }
 
     /// Adds a struct. The name must be new and field types must already be in the table.
     pub fn add_struct(&mut self, name: impl Into<String>, fields: Vec<FieldDef>) -> StructId {
-        self.structs.push(StructDef {
-            name: name.into(),
+        let name = name.into();
+        let id = self.structs.push(StructDef {
+            name: name.clone(),
             fields,
-        })
+        });
+        self.struct_ids.entry(name).or_insert(id);
+        id
     }
 }

@@ -287,20 +287,28 @@ impl ModuleCheck<'_, '_> {
 
     /// Depth-first over calls, without recursion of our own.
     fn recursion(&mut self) {
-        let mut done = EntitySet::<FuncId>::new();
+        let (mut done, mut open) = (EntitySet::<FuncId>::new(), EntitySet::<FuncId>::new());
         for root in self.module.funcs.keys() {
+            if done.contains(root) {
+                continue;
+            }
+            open.insert(root);
             let mut path = vec![(root, callees(self.module, root))];
             while let Some((func, rest)) = path.last_mut() {
                 let (func, next) = (*func, rest.pop());
                 match next {
-                    Some(callee) if path.iter().any(|(f, _)| *f == callee) => {
+                    Some(callee) if open.contains(callee) => {
                         let name = &self.module.funcs[callee].name;
                         self.error(5, format!("@{name} calls itself"));
                     }
                     Some(callee) if done.contains(callee) => {}
-                    Some(callee) => path.push((callee, callees(self.module, callee))),
+                    Some(callee) => {
+                        open.insert(callee);
+                        path.push((callee, callees(self.module, callee)));
+                    }
                     None => {
                         done.insert(func);
+                        open.remove(func);
                         path.pop();
                     }
                 }

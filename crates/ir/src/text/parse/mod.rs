@@ -16,6 +16,9 @@ use std::fmt;
 /// How deep array types may nest.
 const MAX_TYPE_DEPTH: u32 = 16;
 
+/// Fields of a struct that are looked up one after the other.
+const FEW_FIELDS: usize = 8;
+
 /// Why a text is not a module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParseError {
@@ -56,6 +59,7 @@ fn parse(text: &str) -> Result<Module> {
         next: 0,
         types: TypeTable::default(),
         functions: HashMap::new(),
+        fields: HashMap::new(),
     };
     parser.module()
 }
@@ -65,6 +69,7 @@ struct Parser {
     next: usize,
     types: TypeTable,
     functions: HashMap<String, FuncId>,
+    fields: HashMap<StructId, HashMap<String, u32>>,
 }
 
 /// Header lines that need the complete regions or functions; resolved at the end of the header.
@@ -396,13 +401,13 @@ impl Parser {
         };
         self.expect("=")?;
         let value = self.literal(ty)?;
-        let types = self.types.clone();
-        let (layout, image) = self.image(header)?;
+        self.image(header)?;
+        let (layout, image) = header.image.as_mut().expect("just set");
         let place = Place {
             root: Root::State,
             path,
         };
-        image.set_place(layout, &types, state, &place, value.bits);
+        image.set_place(layout, &self.types, state, &place, value.bits);
         Ok(())
     }
 
@@ -528,7 +533,7 @@ impl Parser {
     fn field(&mut self, id: StructId) -> Result<(Projection, MemType)> {
         let at = self.next;
         let name = self.name()?;
-        match self.types.structs[id].field(&name) {
+        match self.field_number(id, &name) {
             Some(field) => Ok((
                 Projection::Field(field),
                 self.types.structs[id].fields[field as usize].ty,
@@ -538,6 +543,22 @@ impl Parser {
                 self.fail(&format!("a field of {}", self.types.structs[id].name))
             }
         }
+    }
+
+    /// Fields are looked up by a table once a struct has many.
+    fn field_number(&mut self, id: StructId, name: &str) -> Option<u32> {
+        let def = &self.types.structs[id];
+        if def.fields.len() <= FEW_FIELDS {
+            return def.field(name);
+        }
+        let numbers = self.fields.entry(id).or_insert_with(|| {
+            let mut numbers = HashMap::new();
+            for (number, field) in (0..).zip(&def.fields) {
+                numbers.entry(field.name.clone()).or_insert(number);
+            }
+            numbers
+        });
+        numbers.get(name).copied()
     }
 
     fn bracketed(&mut self, value: &mut dyn FnMut(&mut Self) -> Result<Index>) -> Result<Index> {
