@@ -40,9 +40,10 @@ pub(super) const FEW: Limits = Limits {
 /// Takes copies and clears apart in every function.
 pub(super) fn expand(module: &mut Module, limits: Limits) {
     let layout = Layout::new(&module.types);
+    let has_addresses = module.has_addresses();
     let ids: Vec<FuncId> = module.funcs.keys().collect();
     for id in ids {
-        let chosen = choose(module, &layout, &module.funcs[id], limits);
+        let chosen = choose(module, &layout, has_addresses, &module.funcs[id], limits);
         if chosen.is_empty() {
             continue;
         }
@@ -64,11 +65,11 @@ pub(super) fn expand(module: &mut Module, limits: Limits) {
 fn choose(
     module: &Module,
     layout: &Layout,
+    has_addresses: bool,
     func: &Function,
     limits: Limits,
 ) -> BTreeMap<Inst, MemType> {
     let mut left = limits.in_all;
-    let has_addresses = module.has_addresses();
     let mut fixed = None;
     let mut chosen = BTreeMap::new();
     let blocks = func.layout.iter().map(|&block| func.block(block));
