@@ -28,6 +28,12 @@ pub const ROCKWELL: &[File] = files! {
     "rockwell/counters.ir"
 };
 
+/// The same in Structured Text. Not in use yet.
+pub const ROCKWELL_TEXT: &[File] = files! {
+    "rockwell/timers.st"
+    "rockwell/counters.st"
+};
+
 /// The functions and function blocks of IEC 61131-3, by what they are about:
 ///
 /// | files | functions |

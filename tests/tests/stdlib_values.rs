@@ -39,8 +39,8 @@ fn run(
     let mut running = engine
         .start(module, PERIOD_NS)
         .unwrap_or_else(|errors| panic!("{}: {errors:?}", engine.name()));
-    let mut inputs = vec![0; region_bytes(module, Region::Input)];
-    let mut outputs = vec![0; region_bytes(module, Region::Output)];
+    let mut inputs = region_bytes(module, Region::Input);
+    let mut outputs = region_bytes(module, Region::Output);
     let mut seen = Vec::with_capacity(scans.len());
     for (index, scan) in scans.iter().enumerate() {
         probes.start_scan(&mut inputs);
