@@ -14,5 +14,6 @@ pub mod rng;
 pub mod rung_text;
 pub mod runs;
 pub mod shared;
+pub mod st_run;
 pub mod st_text;
 pub mod stimulus;

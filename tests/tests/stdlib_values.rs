@@ -3,57 +3,16 @@
 //! interpreter, before and after the passes, and in machine code; the result must be the same to the
 //! last bit.
 
-use iecc_diag::Diagnostics;
-use iecc_driver::run::Probes;
-use iecc_driver::{EngineKind, FrontOptions, Sources, compile};
-use iecc_ir::{Module, Region};
-use iecc_source::SourceMap;
-use iecc_target::region_bytes;
-use std::collections::BTreeMap;
+use iecc_tests::st_run::{Scan, run};
 use std::fmt::Write;
 
-const ENGINES: [EngineKind; 3] = [
-    EngineKind::Interp,
-    EngineKind::InterpSoftware,
-    EngineKind::Jit,
-];
-
-const PERIOD_NS: u64 = 10_000_000;
-
-fn module(text: &str) -> Module {
-    let (mut map, mut found) = (SourceMap::new(), Diagnostics::new());
-    let file = map.add("values.st".to_owned(), text);
-    let sources = Sources::text(&mut map, vec![file]);
-    let module = compile(&map, &sources, &FrontOptions::default(), &mut found);
-    let messages: Vec<_> = found.iter().take(5).collect();
-    module.unwrap_or_else(|| panic!("{messages:?}"))
-}
-
-/// What the places hold after each scan, for the inputs of each scan.
-fn run(
-    engine: EngineKind,
-    module: &Module,
-    probes: &Probes,
-    scans: &[Vec<u64>],
-) -> Vec<Vec<Vec<u64>>> {
-    let mut running = engine
-        .start(module, PERIOD_NS)
-        .unwrap_or_else(|errors| panic!("{}: {errors:?}", engine.name()));
-    let mut inputs = region_bytes(module, Region::Input);
-    let mut outputs = region_bytes(module, Region::Output);
-    let mut seen = Vec::with_capacity(scans.len());
-    for (index, scan) in scans.iter().enumerate() {
-        probes.start_scan(&mut inputs);
-        for (probe, bits) in probes.set.iter().zip(scan) {
-            probe.set(&mut inputs, &[*bits]);
-        }
-        let now_ns = index as u64 * PERIOD_NS;
-        let result = running.step(now_ns, &inputs, &mut outputs);
-        assert_eq!(result, Ok(()), "{}: row {index}", engine.name());
-        let values = probes.seen.iter().map(|probe| probe.get(&inputs, &outputs));
-        seen.push(values.collect());
-    }
-    seen
+/// Scans with these inputs.
+fn scans(inputs: impl Iterator<Item = Vec<u64>>) -> Vec<Scan> {
+    let scan = |(index, inputs)| Scan {
+        now_ns: index * 1_000_000,
+        inputs,
+    };
+    (0_u64..).zip(inputs).map(scan).collect()
 }
 
 /// The rows of a table: its lines without comments, cut at a separator.
@@ -102,32 +61,24 @@ fn mathematical_functions_give_the_nearest_number() {
     let mut kinds: Vec<(&str, &str)> = table.iter().map(|row| (row[0], row[1])).collect();
     kinds.sort_unstable();
     kinds.dedup();
-    let mut module = module(&functions_program(&kinds));
-    let names = |list: &[&str]| {
-        list.iter()
-            .map(|name| (*name).to_owned())
-            .collect::<Vec<_>>()
-    };
-    let probes = Probes::open(&mut module, &names(&["k", "x", "y"]), &names(&["r"]));
-    let probes = probes.expect("the variables are there");
-    let scan = |row: &Vec<&str>| {
+    let inputs = |row: &Vec<&str>| {
         let kind = kinds.iter().position(|kind| *kind == (row[0], row[1]));
         let kind = kind.expect("taken from the table") as u64;
         vec![kind, pattern(row[2]), pattern(row[3])]
     };
-    let scans: Vec<Vec<u64>> = table.iter().map(scan).collect();
-    for engine in ENGINES {
-        let seen = run(engine, &module, &probes, &scans);
-        for (row, values) in table.iter().zip(&seen) {
+    let scans = scans(table.iter().map(inputs));
+    let text = functions_program(&kinds);
+    run(
+        &text,
+        &["k", "x", "y"],
+        &["r"],
+        &scans,
+        |engine, index, values| {
+            let row = &table[index];
             let (given, expected) = (values[0][0], pattern(row[4]));
-            assert_eq!(
-                given,
-                expected,
-                "{} {row:?}: {given:X} instead of {expected:X}",
-                engine.name()
-            );
-        }
-    }
+            assert_eq!(given, expected, "{engine} {row:?}: {given:X}");
+        },
+    );
 }
 
 /// The types of arguments and results, with their bits; strings apart.
@@ -200,25 +151,18 @@ fn expected(ty: &str, written: &str) -> Vec<u64> {
 fn calls_give_the_results_of_the_table() {
     let table = rows(include_str!("../stdlib/calls.tsv"), '\t');
     assert!(table.len() > 1000, "{} rows", table.len());
-    let mut module = module(&calls_program(&table));
-    let mut seen_names: Vec<String> = TYPES.iter().map(|(ty, _)| format!("r_{ty}")).collect();
-    seen_names.extend(["r_STRING".to_owned(), "ok".to_owned()]);
-    let probes = Probes::open(&mut module, &["k".to_owned()], &seen_names);
-    let probes = probes.expect("the variables are there");
-    let columns: BTreeMap<&str, usize> = (0..)
-        .zip(&seen_names)
-        .map(|(index, name)| (name.as_str(), index))
-        .collect();
-    let scans: Vec<Vec<u64>> = (0..table.len() as u64).map(|k| vec![k]).collect();
-    for engine in ENGINES {
-        let seen = run(engine, &module, &probes, &scans);
-        for (row, values) in table.iter().zip(&seen) {
-            let expected = expected(row[2], row[3]);
-            let column = columns[format!("r_{}", row[2]).as_str()];
-            let given = &values[column][..expected.len()];
-            assert_eq!(given, expected, "{} {row:?}", engine.name());
-            let ok = values[columns["ok"]][0] == 1;
-            assert_eq!(ok, row[4] == "TRUE", "ENO on {} {row:?}", engine.name());
-        }
-    }
+    let mut seen: Vec<String> = TYPES.iter().map(|(ty, _)| format!("r_{ty}")).collect();
+    seen.extend(["r_STRING".to_owned(), "ok".to_owned()]);
+    let seen: Vec<&str> = seen.iter().map(String::as_str).collect();
+    let scans = scans((0..table.len() as u64).map(|k| vec![k]));
+    let text = calls_program(&table);
+    run(&text, &["k"], &seen, &scans, |engine, index, values| {
+        let row = &table[index];
+        let column = seen.iter().position(|name| name[2..] == *row[2]);
+        let expected = expected(row[2], row[3]);
+        let given = &values[column.expect("a column for each type")][..expected.len()];
+        assert_eq!(given, expected, "{engine} {row:?}");
+        let ok = values[seen.len() - 1][0] == 1;
+        assert_eq!(ok, row[4] == "TRUE", "ENO on {engine} {row:?}");
+    });
 }
