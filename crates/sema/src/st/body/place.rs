@@ -367,7 +367,8 @@ impl Body<'_, '_> {
                     && self
                         .pou
                         .is_some_and(|own| self.an.pou(own).owner.unwrap_or(own) == pou);
-                if !inside && !self.visible_outside(&var, at) {
+                let lasting = !matches!(var.storage, Storage::Local | Storage::Ref(_));
+                if lasting && !inside && !self.visible_outside(&var, at) {
                     let message = format!("`{}` is private", self.text(member.name));
                     let diagnostic =
                         Diagnostic::new(Message::E1015, self.span(member.range), message);
