@@ -11,5 +11,5 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) {
-    arguments.program.compile(messages);
+    arguments.program.check(messages);
 }

@@ -6,8 +6,8 @@ use iecc_diag::Code;
 use iecc_driver::run::Stimulus;
 use iecc_driver::{
     Choice, Compiled, DIALECTS, Dialect, EDITS, Edits, FAULTS, Found, FrontOptions, INITS, Init,
-    LEVELS, Level, Levels, OnFault, Project, Sources, TimerBase, compile_with_tick, find,
-    find_choice, load,
+    LEVELS, Level, Levels, OnFault, Project, Sources, TimerBase, check_options, compile_with_tick,
+    find, find_choice, load,
 };
 use std::path::{Path, PathBuf};
 
@@ -130,8 +130,24 @@ impl Program {
         }
     }
 
+    /// Reads the program and says what is wrong with it.
+    pub(crate) fn check(&self, messages: &mut Messages) {
+        if let Some((sources, project)) = self.read(messages) {
+            let (map, diagnostics) = (&messages.map, &mut messages.diagnostics);
+            check_options(map, &sources, &project.options, diagnostics);
+        }
+    }
+
     /// Reads the program and compiles it.
     pub(crate) fn compile(&self, messages: &mut Messages) -> Option<(Compiled, Project)> {
+        let (sources, project) = self.read(messages)?;
+        let (map, diagnostics) = (&messages.map, &mut messages.diagnostics);
+        let compiled = compile_with_tick(map, &sources, &project.options, diagnostics)?;
+        Some((compiled, project))
+    }
+
+    /// The sources, and the options of the project file and the command line.
+    fn read(&self, messages: &mut Messages) -> Option<(Sources, Project)> {
         let (map, diagnostics) = (&mut messages.map, &mut messages.diagnostics);
         let (mut project, paths) = match find(map, &self.paths, diagnostics)? {
             Found::Project(project) => (*project, None),
@@ -143,8 +159,7 @@ impl Program {
             Some(paths) => Sources::load(map, &paths, levels, diagnostics),
             None => project.load(map, levels, diagnostics),
         };
-        let compiled = compile_with_tick(map, &sources?, &project.options, diagnostics)?;
-        Some((compiled, project))
+        Some((sources?, project))
     }
 }
 

@@ -231,6 +231,22 @@ pub fn compile_with_tick(
     Some(Compiled { module, tick_ns })
 }
 
+/// Says everything that [`compile`] says. A module is made only where an option is about it.
+pub fn check_options(
+    map: &SourceMap,
+    sources: &Sources,
+    options: &FrontOptions,
+    diagnostics: &mut Diagnostics,
+) {
+    if options.renames.is_empty() {
+        if let Some(program) = check(map, sources, options, diagnostics) {
+            lower_options(&program, options, diagnostics);
+        }
+    } else {
+        compile(map, sources, options, diagnostics);
+    }
+}
+
 fn tick_ns(program: &hir::Program) -> Option<u64> {
     let intervals = program.tasks.iter().filter_map(|task| match task.trigger {
         Trigger::EveryScan | Trigger::Timed { interval_ns: 0, .. } => None,

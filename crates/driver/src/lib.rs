@@ -25,7 +25,9 @@ pub use build::{Replay, VerilogRequest, build_object, build_verilog};
 pub use choices::{Choice, DIALECTS, EDITS, FAULTS, INITS, LEVELS, find as find_choice};
 pub use engine::EngineKind;
 pub use explain::{explain_instruction, list_instructions};
-pub use front::{Compiled, FrontOptions, TimerBase, check, compile, compile_with_tick};
+pub use front::{
+    Compiled, FrontOptions, TimerBase, check, check_options, compile, compile_with_tick,
+};
 pub use iecc_grammar::st::Dialect;
 pub use iecc_jit::Cpu;
 pub use iecc_lower::OnFault;
