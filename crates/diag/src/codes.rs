@@ -111,6 +111,20 @@ codes! {
     E1017 Error "enumerator is ambiguous";
     E1018 Error "function or instance does not exist";
     E1019 Error "parameter does not exist";
+    E1040 Error "class, block or interface extends itself";
+    E1041 Error "unit cannot be extended or implemented like this";
+    E1042 Error "namespace does not exist";
+    E1043 Error "name is in several namespaces that are used";
+    E1044 Error "name is internal to its namespace";
+    E1045 Error "FINAL class, block or method is changed";
+    E1046 Error "abstract class, block or method is used";
+    E1047 Error "abstract method has no body";
+    E1048 Error "words of a declaration do not go together";
+    E1049 Error "name is inherited already";
+    E1050 Error "OVERRIDE is missing, or overrides nothing";
+    E1051 Error "method does not fit the one it stands for";
+    E1052 Error "method of an interface is missing";
+    E1053 Error "instance with relatives lives for one call only";
     // 2 types and constants
     E2001 Error "operand is of the wrong kind";
     E2002 Error "index is outside the array";
@@ -137,6 +151,8 @@ codes! {
     E2032 Error "subscript is no integer";
     E2033 Error "value has no such bits";
     E2034 Error "value is no reference";
+    E2035 Error "?= between types it is not for";
+    E2036 Error "?= that always gives NULL";
     // 3 statements and flow
     E3001 Error "value stands outside of a declaration";
     E3002 Error "reference to something that has none";

@@ -8,17 +8,21 @@ use iecc_ast::st::{self, Unit};
 use iecc_ast::{Names, Symbol};
 use iecc_diag::{Code, Diagnostic, Diagnostics, closest};
 use iecc_source::{Span, TextRange};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A namespace, or what is in none.
 #[derive(Debug, Default)]
 pub(crate) struct Namespace {
     /// What it is in.
     pub parent: Option<NamespaceId>,
+    /// Its name; the file itself and what one unit uses have none.
+    pub name: Option<Symbol>,
     /// What it declares; several only for overloads of the library.
     pub defs: FxHashMap<Symbol, Vec<Def>>,
     /// What `USING` makes visible.
     pub usings: Vec<NamespaceId>,
+    /// What of it cannot be seen from outside.
+    pub internal: FxHashSet<Symbol>,
 }
 
 /// A declaration of a type, and what came of it.
@@ -79,6 +83,12 @@ pub(crate) struct Analysis<'a> {
     pub wanted: Vec<PouId>,
     /// Units whose bodies name ENO.
     pub eno_units: std::cell::RefCell<FxHashMap<UnitId, bool>>,
+    /// Who extends and implements whom.
+    pub families: super::heritage::Families,
+    /// Bodies of a base made for what extends it.
+    pub receivers: FxHashMap<(PouId, PouId), PouId>,
+    /// Units that choose a body by the type of an instance.
+    pub dispatchers: FxHashMap<(PouId, Option<Symbol>), super::dispatch::Dispatcher>,
     /// Bodies that no source has.
     pub synthetics: Vec<(hir::PouId, hir::Pou)>,
     /// How many bodies have a name.

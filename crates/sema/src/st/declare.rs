@@ -17,7 +17,7 @@ impl<'a> Analysis<'a> {
             let parent = scope
                 .parent
                 .map_or(root, |parent| scopes[parent.0 as usize]);
-            scopes[index] = self.namespace(parent, &scope.name, scope.span);
+            scopes[index] = self.namespace(parent, &scope.name, scope.internal, scope.span);
         }
         self.declare_scope(file, ScopeId::FILE, &scopes);
     }
@@ -36,7 +36,13 @@ impl<'a> Analysis<'a> {
     }
 
     /// The namespace with a path below another, opened again or new.
-    fn namespace(&mut self, parent: NamespaceId, path: &[st::Ident], span: Span) -> NamespaceId {
+    fn namespace(
+        &mut self,
+        parent: NamespaceId,
+        path: &[st::Ident],
+        internal: bool,
+        span: Span,
+    ) -> NamespaceId {
         let mut at = parent;
         for part in path {
             let known = self.lookup_in(at, part.name).first().copied();
@@ -46,6 +52,7 @@ impl<'a> Analysis<'a> {
                     let id = NamespaceId(self.namespaces.len() as u32);
                     self.namespaces.push(super::analysis::Namespace {
                         parent: Some(at),
+                        name: Some(part.name),
                         ..Default::default()
                     });
                     self.define(at, part.name, Def::Namespace(id), span);
@@ -53,14 +60,24 @@ impl<'a> Analysis<'a> {
                 }
             };
         }
+        if let (true, [.., last]) = (internal, path) {
+            let parent = self.namespaces[at.index()].parent.unwrap_or(parent);
+            self.hide(parent, last.name);
+        }
         at
+    }
+
+    /// Makes a name one that only its own namespace sees.
+    fn hide(&mut self, namespace: NamespaceId, name: Symbol) {
+        self.namespaces[namespace.index()].internal.insert(name);
     }
 
     fn declare_unit(&mut self, unit: &'a st::Unit, namespace: NamespaceId) {
         let id = UnitId(self.units.len() as u32);
         self.units.push(UnitRef { unit, namespace });
         match &unit.kind {
-            UnitKind::Types { types, .. } => {
+            UnitKind::Types { modifiers, types } => {
+                let internal = is_internal(&unit.arena[*modifiers]);
                 for decl in &unit.arena[*types] {
                     let def = Def::Type(TypeDeclId(self.type_decls.len() as u32));
                     self.type_decls.push(TypeDecl {
@@ -70,6 +87,9 @@ impl<'a> Analysis<'a> {
                         state: Resolution::Untouched,
                     });
                     self.define(namespace, decl.name.name, def, unit.span(decl.name.range));
+                    if internal {
+                        self.hide(namespace, decl.name.name);
+                    }
                 }
             }
             UnitKind::Pou(pou) => self.declare_pou(id, unit, pou, namespace),
@@ -103,11 +123,15 @@ impl<'a> Analysis<'a> {
             members: Vec::new(),
             extends: Vec::new(),
             implements: Vec::new(),
+            receiver: None,
             modifiers: unit.arena[pou.modifiers].iter().map(|m| m.kind).collect(),
             bindings: Bindings::default(),
             state: State::Declared,
         });
         self.define(namespace, pou.name.name, Def::Pou(whole), span);
+        if is_internal(&unit.arena[pou.modifiers]) {
+            self.hide(namespace, pou.name.name);
+        }
         for (index, member) in (0..).zip(&unit.arena[pou.members]) {
             let (modifiers, part) = match member {
                 Member::Method(method) => (method.modifiers, Part::Member(index)),
@@ -164,4 +188,10 @@ impl<'a> Analysis<'a> {
             Def::Namespace(_) => None,
         }
     }
+}
+
+fn is_internal(modifiers: &[st::Modifier]) -> bool {
+    modifiers
+        .iter()
+        .any(|modifier| modifier.kind == st::ModifierKind::Internal)
 }

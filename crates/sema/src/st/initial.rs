@@ -6,7 +6,7 @@ use super::constant::Const;
 use super::elementary::El;
 use super::resolve::TypeScope;
 use super::signature::{Initial, PouId, Storage};
-use super::storage::{InstancePart, extent};
+use super::storage::extent;
 use super::types::{TypeId, TypeKind};
 use crate::hir::{InitId, code::Init};
 use iecc_ast::st::{self, ArgumentKind, ExprKind};
@@ -92,7 +92,7 @@ impl Analysis<'_> {
     }
 
     /// Recursion is bounded by the depth of expressions.
-    fn value_of(
+    pub(crate) fn value_of(
         &mut self,
         scope: TypeScope<'_>,
         expr: st::Id<st::Expr>,
@@ -334,7 +334,7 @@ impl Analysis<'_> {
         self.struct_init(parts)
     }
 
-    fn no_such_member(
+    pub(crate) fn no_such_member(
         &mut self,
         scope: TypeScope<'_>,
         name: st::Ident,
@@ -347,49 +347,6 @@ impl Analysis<'_> {
             diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
         }
         self.report(diagnostic);
-    }
-
-    fn instance_value(
-        &mut self,
-        scope: TypeScope<'_>,
-        arguments: st::List<st::Argument>,
-        pou: PouId,
-    ) -> Option<InitId> {
-        let arena = &self.unit(scope.unit).arena;
-        let signature = self.pou(pou).clone();
-        let mut given: Vec<Option<st::Id<st::Expr>>> = vec![None; signature.vars.len()];
-        for argument in &arena[arguments] {
-            let ArgumentKind::Input(name) = argument.kind else {
-                continue;
-            };
-            match signature.by_name.get(&name.name) {
-                Some(&position) => given[position as usize] = argument.value,
-                None => {
-                    let candidates = signature.vars.iter().map(|var| var.name);
-                    self.no_such_member(scope, name, candidates.collect());
-                }
-            }
-        }
-        let mut parts = Vec::new();
-        for (position, part) in (0..).zip(self.instance_parts(pou)) {
-            let init = match part {
-                InstancePart::Base(base) => {
-                    let ty = self.types.intern(TypeKind::Instance(base));
-                    self.default_init(ty)
-                }
-                InstancePart::Var(index) => {
-                    let var = &signature.vars[index];
-                    match (given[index], var.initial) {
-                        (Some(expr), _) => self.value_of(scope, expr, var.ty),
-                        (None, Some(initial)) => self.initial_value(initial, var.ty),
-                        (None, None) => self.default_init(var.ty),
-                    }
-                }
-                InstancePart::Edge(_) => None,
-            };
-            parts.extend(init.map(|init| (position, init)));
-        }
-        self.struct_init(parts)
     }
 }
 

@@ -22,8 +22,13 @@ mod analysis;
 mod body;
 pub mod constant;
 mod declare;
+mod dispatch;
 pub mod elementary;
+mod heritage;
+mod inheritance;
 mod initial;
+mod instance;
+mod namespaces;
 mod program;
 mod resolve;
 pub mod signature;
@@ -88,6 +93,8 @@ pub fn analyze(
         analysis.declare_file(file, NamespaceId::GLOBAL);
     }
     analysis.index_units();
+    analysis.resolve_usings();
+    analysis.resolve_heritage();
     analysis.resolve_all();
     analysis.assemble();
     let program = analysis.finish();
@@ -135,6 +142,9 @@ impl<'a> Analysis<'a> {
             hir: hir::Program::empty(),
             instances: FxHashMap::default(),
             wanted: Vec::new(),
+            families: heritage::Families::default(),
+            receivers: FxHashMap::default(),
+            dispatchers: FxHashMap::default(),
             eno_units: std::cell::RefCell::default(),
             synthetics: Vec::new(),
             unit_names: FxHashMap::default(),
@@ -167,8 +177,10 @@ impl<'a> Analysis<'a> {
             self.complete(id);
         }
         for &id in &user {
+            self.check_inheritance(id);
+            let home = self.pou(id).owner.unwrap_or(id);
             // With open arrays there is a body for every call.
-            if self.pou(id).kind != PouKind::Interface && !self.has_open_arrays(id) {
+            if self.pou(home).kind != PouKind::Interface && !self.has_open_arrays(id) {
                 self.want(id);
             }
         }
@@ -195,7 +207,13 @@ impl<'a> Analysis<'a> {
 
     fn checked_pou(&mut self, id: PouId) -> hir::Pou {
         self.complete(id);
+        let again = self.pou(id).receiver.is_some();
+        let kept = again.then(|| std::mem::take(&mut self.found));
         let code = self.body(id);
+        // Mistakes in a body are reported once, not for every type that it runs on.
+        if let Some(kept) = kept {
+            self.found = kept;
+        }
         let pou = self.pou(id);
         let (span, own) = (pou.span, self.text(pou.name));
         let name = match pou.owner {
@@ -213,7 +231,7 @@ impl<'a> Analysis<'a> {
     }
 
     /// Instances of generic units and units of different namespaces may have one name.
-    fn unique_unit_name(&mut self, name: String) -> String {
+    pub(crate) fn unique_unit_name(&mut self, name: String) -> String {
         let number = self.unit_names.entry(name.clone()).or_insert(0);
         *number += 1;
         match *number {

@@ -162,9 +162,10 @@ impl Analysis<'_> {
         {
             return ty;
         }
-        let def = self.path(scope.unit, scope.namespace, path);
-        let def = def.and_then(|defs| defs.first().copied());
-        match def {
+        let Some(defs) = self.found(scope.unit, scope.namespace, path) else {
+            return TypeId::ERROR;
+        };
+        match defs.first().copied() {
             Some(Def::Type(id)) => self.declared_type(id),
             Some(Def::Pou(id)) => match self.pou(id).kind {
                 st::PouKind::FunctionBlock | st::PouKind::Class | st::PouKind::Program => {

@@ -108,6 +108,8 @@ pub struct Pou {
     pub extends: Vec<PouId>,
     /// The interfaces it implements.
     pub implements: Vec<PouId>,
+    /// The class or block that the instance is of, for the body of a base made for it.
+    pub receiver: Option<PouId>,
     /// Words in front of the name.
     pub modifiers: Vec<st::ModifierKind>,
     /// Generic types of a library unit have a value here in the instance made for a call.

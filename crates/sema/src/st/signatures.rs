@@ -45,12 +45,18 @@ impl Analysis<'_> {
         if let Some(owner) = self.pou(id).owner {
             self.complete(owner);
         }
+        if let Some(base) = self
+            .base_of(id)
+            .filter(|_| self.pou(id).part == Part::Whole)
+        {
+            self.complete(base);
+            self.inherit_in_outs(id, base);
+        }
         if let Some(written) = self.written_pou(id) {
             let scope = self.pou_scope(id);
             let scope = scope.as_scope();
             let result = written.result.map(|ty| self.type_of_spec(scope, ty));
             self.pous[id.index()].result = result;
-            self.heritage(id);
             let sections = &self.unit(scope.unit).arena[written.sections];
             for section in sections {
                 self.section(id, written.kind, section);
@@ -110,42 +116,6 @@ impl Analysis<'_> {
         }
     }
 
-    /// EXTENDS and IMPLEMENTS.
-    fn heritage(&mut self, id: PouId) {
-        let pou = self.pou(id);
-        if pou.part != Part::Whole {
-            return;
-        }
-        let (unit_id, namespace) = (pou.unit, pou.namespace);
-        let unit = self.unit(unit_id);
-        let UnitKind::Pou(written) = &unit.kind else {
-            return;
-        };
-        for (paths, extends) in [(written.extends, true), (written.implements, false)] {
-            for &path in &unit.arena[paths] {
-                let def = self.path(unit_id, namespace, path);
-                let def = def.and_then(|defs| defs.first().copied());
-                let span = unit.span(unit.arena[path].range);
-                let Some(Def::Pou(base)) = def else {
-                    self.error(Code::E1010, span, "this is no class, block or interface");
-                    continue;
-                };
-                if self.pou(base).state == State::InProgress {
-                    let name = self.text(self.pou(base).name);
-                    self.error(Code::E2009, span, format!("`{name}` extends itself"));
-                    continue;
-                }
-                self.complete(base);
-                let pou = &mut self.pous[id.index()];
-                if extends {
-                    pou.extends.push(base);
-                } else {
-                    pou.implements.push(base);
-                }
-            }
-        }
-    }
-
     fn section(&mut self, id: PouId, kind: PouKind, section: &st::VarSection) {
         let unit_id = self.pou(id).unit;
         let unit = self.unit(unit_id);
@@ -188,6 +158,7 @@ impl Analysis<'_> {
                 if let Some(location) = decl.location {
                     self.located(id, &mut var, location);
                 }
+                var.ty = self.check_instance(id, section.kind, &var);
                 if section.kind == SectionKind::External {
                     self.external(id, &mut var);
                 } else if constant {
@@ -250,7 +221,8 @@ impl Analysis<'_> {
                 TypeKind::Array { element, .. } => at = element,
                 TypeKind::Instance(inner) => {
                     let name = self.text(self.pou(inner).name);
-                    if self.pou(inner).state == State::InProgress {
+                    let mut lineage = self.lineage(inner).into_iter();
+                    if lineage.any(|id| self.pou(id).state == State::InProgress) {
                         let message = format!("`{name}` contains itself");
                         self.error(Code::E2009, span, message);
                         return TypeId::ERROR;
@@ -343,10 +315,49 @@ impl Analysis<'_> {
         pou.vars.push(var);
     }
 
+    /// In-outs of a base are passed with every call of what extends it.
+    fn inherit_in_outs(&mut self, id: PouId, base: PouId) {
+        let inherited: Vec<Var> = self
+            .pou(base)
+            .section(SectionKind::InOut)
+            .cloned()
+            .collect();
+        let UnitKind::Pou(written) = &self.unit(self.pou(id).unit).kind else {
+            return;
+        };
+        for mut var in inherited {
+            var.range = written.name.range;
+            var.storage = Storage::Local;
+            self.add_var(id, var);
+        }
+    }
+
+    /// Inputs, outputs and in-outs of a unit and of what it extends, the base first.
+    pub(crate) fn all_parameters(&self, id: PouId) -> Vec<Var> {
+        let mut parameters: Vec<Var> = Vec::new();
+        for level in self.lineage(id).into_iter().rev() {
+            for var in &self.pou(level).vars {
+                let passed = matches!(
+                    var.section,
+                    SectionKind::Input | SectionKind::Output | SectionKind::InOut
+                );
+                if !passed {
+                    continue;
+                }
+                match parameters.iter_mut().find(|known| known.name == var.name) {
+                    // The same in-out, nearer to the unit.
+                    Some(known) => *known = var.clone(),
+                    None => parameters.push(var.clone()),
+                }
+            }
+        }
+        parameters
+    }
+
     /// Says where each variable lives.
     fn place_vars(&mut self, id: PouId) {
         let instances = self.pou(id).has_instances();
-        let (mut field, mut reference) = (self.pou(id).extends.len() as u32, u32::from(instances));
+        let (mut field, mut reference) = (self.first_field(id), u32::from(instances));
         if self.pou(id).owner.is_some() {
             reference = 1;
         }

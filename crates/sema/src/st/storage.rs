@@ -2,7 +2,8 @@
 
 use super::analysis::Analysis;
 use super::elementary::El;
-use super::signature::{PouId, Storage};
+use super::instance::InstancePart;
+use super::signature::PouId;
 use super::types::{TypeId, TypeKind};
 use crate::hir::{
     ArrayId, Elementary, InitId, MemberDef, StructDef, StructId, StructKind, Type, View, code::Init,
@@ -155,6 +156,10 @@ impl Analysis<'_> {
         let mut members = Vec::new();
         for part in self.instance_parts(pou) {
             let (name, ty, of, hidden) = match part {
+                InstancePart::TypeNumber => {
+                    let ty = Type::Elementary(Elementary::Udint);
+                    ("__type".to_owned(), ty, TypeId::ERROR, true)
+                }
                 InstancePart::Base(base) => {
                     let ty = Type::Struct(self.instance_struct(base));
                     ("__base".to_owned(), ty, TypeId::ERROR, true)
@@ -182,28 +187,6 @@ impl Analysis<'_> {
         let id = self.add_struct(name, StructKind::Plain, members);
         self.storage.instances.insert(pou, id);
         id
-    }
-
-    /// What the structure of an instance is made of; positions are those of its fields.
-    pub(crate) fn instance_parts(&self, pou: PouId) -> Vec<InstancePart> {
-        let sig = self.pou(pou);
-        let mut parts: Vec<_> = sig
-            .extends
-            .iter()
-            .map(|base| InstancePart::Base(*base))
-            .collect();
-        let mut fields: Vec<(u32, InstancePart)> = Vec::new();
-        for (index, var) in sig.vars.iter().enumerate() {
-            if let Storage::Field(field) = var.storage {
-                fields.push((field, InstancePart::Var(index)));
-                if var.edge.is_some() {
-                    fields.push((field + 1, InstancePart::Edge(index)));
-                }
-            }
-        }
-        fields.sort_by_key(|(field, _)| *field);
-        parts.extend(fields.into_iter().map(|(_, part)| part));
-        parts
     }
 
     /// Adds a structure; its name gets a number where another one has it.
@@ -271,28 +254,7 @@ impl Analysis<'_> {
                 }
                 self.struct_init(parts)
             }
-            TypeKind::Instance(pou) => {
-                let mut parts = Vec::new();
-                for (position, part) in (0..).zip(self.instance_parts(pou)) {
-                    let init = match part {
-                        InstancePart::Base(base) => {
-                            let ty = self.types.intern(TypeKind::Instance(base));
-                            self.default_init(ty)
-                        }
-                        InstancePart::Var(index) => {
-                            let var = self.pou(pou).vars[index].clone();
-                            match var.initial {
-                                Some(initial) => self.initial_value(initial, var.ty),
-                                None => self.default_init(var.ty),
-                            }
-                        }
-                        // F_EDGE sees a falling edge only after the input was TRUE.
-                        InstancePart::Edge(_) => None,
-                    };
-                    parts.extend(init.map(|init| (position, init)));
-                }
-                self.struct_init(parts)
-            }
+            TypeKind::Instance(pou) => self.instance_default(pou),
             TypeKind::Error
             | TypeKind::Nothing
             | TypeKind::UntypedInt
@@ -324,17 +286,6 @@ impl Analysis<'_> {
         self.storage.shared.insert(init, id);
         id
     }
-}
-
-/// One field of the structure of an instance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum InstancePart {
-    /// The instance of what is extended.
-    Base(PouId),
-    /// A variable, by its position in the signature.
-    Var(usize),
-    /// What an input with an edge was before.
-    Edge(usize),
 }
 
 /// How many elements a dimension has; bounds are checked when the type is made.

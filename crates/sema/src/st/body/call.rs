@@ -1,5 +1,6 @@
 //! Calls: what is called, which argument goes where.
 
+use super::object::{Run, Target};
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{Call, ExprKind, PathId, PathStep, Root, StmtKind};
 use crate::st::constant::Const;
@@ -11,13 +12,15 @@ use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::TextRange;
 
 /// What stands before the parentheses.
-enum Callee {
+pub(super) enum Callee {
     /// Functions of one name; several are overloads of the library.
     Functions(Vec<PouId>),
     /// A block, by its instance.
     Block(PouId, Place),
     /// A method of an instance.
-    Method(PouId, Place),
+    Method(Target),
+    /// A message has been given.
+    Mistake,
 }
 
 impl Body<'_, '_> {
@@ -127,17 +130,22 @@ impl Body<'_, '_> {
             self.error(Message::E3012, written.range, message);
             return;
         };
+        let callee = self.pointed_self(callee);
+        if matches!(self.arena()[callee].kind, Written::Super) {
+            self.super_call(arguments, written.range);
+            return;
+        }
         match self.callee(callee, written.range) {
             Some(Callee::Block(pou, place)) => {
                 self.block_call(pou, &place, arguments, written.range);
             }
+            Some(Callee::Mistake) | None => self.arguments_only(arguments),
             Some(callee) => {
                 let result = self.call_of(callee, arguments, written.range, None);
                 if let OperandKind::Value(value) = result.kind {
                     self.before(StmtKind::Eval(value), written.range);
                 }
             }
-            None => self.arguments_only(arguments),
         }
     }
 
@@ -159,6 +167,10 @@ impl Body<'_, '_> {
             return operand;
         }
         match self.callee(callee, range) {
+            Some(Callee::Mistake) | None => {
+                self.arguments_only(arguments);
+                Operand::error(range)
+            }
             Some(Callee::Block(..)) => {
                 self.arguments_only(arguments);
                 let message = "a block gives no value; call it in a statement and use its outputs";
@@ -170,10 +182,6 @@ impl Body<'_, '_> {
                     return self.error(Message::E3014, range, "this function gives no value");
                 }
                 result
-            }
-            None => {
-                self.arguments_only(arguments);
-                Operand::error(range)
             }
         }
     }
@@ -195,8 +203,8 @@ impl Body<'_, '_> {
         }
         match callee {
             Callee::Functions(functions) => self.function_call(&functions, arguments, range, want),
-            Callee::Method(method, place) => self.user_call(method, Some(place), arguments, range),
-            Callee::Block(..) => unreachable!("handled by the callers"),
+            Callee::Method(target) => self.user_call(target, arguments, range),
+            Callee::Block(..) | Callee::Mistake => unreachable!("handled by the callers"),
         }
     }
 
@@ -215,7 +223,8 @@ impl Body<'_, '_> {
             Written::Name(name) => self.named_callee(name, id, written.range),
             Written::Member { base, member } => self.member_callee(id, base, member),
             Written::Super => {
-                self.error(Message::E2010, range, "SUPER() is not compiled yet");
+                let message = "SUPER() is a statement and gives no value";
+                self.error(Message::E3003, range, message);
                 None
             }
             _ => self.instance_callee(id),
@@ -231,17 +240,10 @@ impl Body<'_, '_> {
         if self.own_symbol(name) {
             return self.instance_callee(id);
         }
-        if let Some(owner) = self.pou.map(|pou| self.an.pou(pou).owner.unwrap_or(pou))
-            && let Some(method) = self.an.method(owner, name)
-        {
-            let place = Place {
-                root: Root::Ref(0),
-                steps: Vec::new(),
-                rights: Rights::All,
-            };
-            return Some(Callee::Method(method, place));
+        if let Some(callee) = self.own_method(name, range) {
+            return Some(callee);
         }
-        let defs = self.an.lookup(self.namespace, name).to_vec();
+        let defs = self.an.found_name(self.unit, self.namespace, name, range)?;
         self.functions_of(&defs).or_else(|| {
             match defs.first() {
                 None => self.unknown_function(name, range),
@@ -290,7 +292,9 @@ impl Body<'_, '_> {
             && let Some(&[Def::Namespace(namespace), ..]) =
                 self.an.path(self.unit, self.namespace, base)
         {
-            let defs = self.an.lookup_in(namespace, member.name).to_vec();
+            let defs = self
+                .an
+                .found_in(self.unit, self.namespace, namespace, member)?;
             let found = self.functions_of(&defs);
             if found.is_none() {
                 let message = format!("the namespace has no function `{}`", self.text(member.name));
@@ -298,16 +302,16 @@ impl Body<'_, '_> {
             }
             return found;
         }
+        let base = self.pointed_self(base);
+        if matches!(self.arena()[base].kind, Written::Super) {
+            return Some(self.super_method(member, self.arena()[id].range));
+        }
         let operand = self.place(base, None);
         if operand.is_error() {
             return None;
         }
-        if let (OperandKind::Place(place), TypeKind::Instance(pou)) =
-            (&operand.kind, self.an.types.base(operand.ty))
-            && let Some(method) = self.an.method(*pou, member.name)
-        {
-            let place = place.clone();
-            return Some(Callee::Method(method, place));
+        if let Some(callee) = self.method_callee(&operand, member) {
+            return Some(callee);
         }
         self.instance_callee(id)
     }
@@ -387,21 +391,33 @@ impl Body<'_, '_> {
             }
         }
         self.require_in_outs(pou, &matched, range);
-        let this = self.path_of(place, range);
+        let run = self.run(pou, place, None, pou, range);
         let given: Option<Vec<PathId>> = refs.into_iter().collect();
         let eno = self.eno_target(arguments);
+        let mut changes_eno = false;
         let eno_place = eno.map(|_| self.temporary("ENO", TypeId::BOOL));
         if let Some(given) = given {
-            let callee = self.an.want(pou);
-            let refs = std::iter::once(this).chain(given).collect();
+            let target = Target {
+                signature: pou,
+                run,
+            };
+            changes_eno = self.shape_of(&target).eno;
+            let callee = self.run_unit(&target);
+            let (mut refs, mut args) = (Vec::new(), Vec::new());
+            match &target.run {
+                Run::Function => {}
+                Run::On { instance, .. } => refs.push(self.path_of(instance, range)),
+                Run::Choose { address, .. } => args.push(*address),
+            }
+            refs.extend(given);
             let mut outputs = Vec::new();
-            if let (true, Some(eno)) = (shape.eno, &eno_place) {
+            if let (true, Some(eno)) = (changes_eno, &eno_place) {
                 outputs.push((0, self.path_of(eno, range)));
             }
             let call = self.add_call(Call {
                 callee,
                 refs,
-                args: Vec::new(),
+                args,
                 outputs,
             });
             let value = self.add_expr(ExprKind::Call(call), crate::hir::Elementary::Bool, range);
@@ -409,11 +425,11 @@ impl Body<'_, '_> {
         }
         for (var, argument) in &matched {
             if var.section == SectionKind::Output {
-                self.block_output(place, var, argument);
+                self.block_output(pou, place, var, argument);
             }
         }
         if let (Some(eno), Some(place)) = (eno, eno_place) {
-            self.eno_to(shape.eno, place, &eno);
+            self.eno_to(changes_eno, place, &eno);
         }
     }
 
@@ -450,18 +466,21 @@ impl Body<'_, '_> {
     }
 
     /// The steps to a variable of an instance or of what it extends.
-    fn field_steps(&self, _pou: PouId, place: &Place, var: &Var) -> Option<Vec<PathStep>> {
+    fn field_steps(&self, pou: PouId, place: &Place, var: &Var) -> Option<Vec<PathStep>> {
         let Storage::Field(field) = var.storage else {
             return None;
         };
+        let (of, _) = self.an.instance_var(pou, var.name)?;
         let mut steps = place.steps.clone();
+        let distance = self.an.base_distance(pou, of).unwrap_or(0);
+        steps.extend(std::iter::repeat_n(PathStep::Field(0), distance));
         steps.push(PathStep::Field(field));
         Some(steps)
     }
 
-    fn block_output(&mut self, place: &Place, var: &Var, argument: &Argument) {
+    fn block_output(&mut self, pou: PouId, place: &Place, var: &Var, argument: &Argument) {
         let Some(target) = argument.value else { return };
-        let Some(steps) = self.field_steps(PouId(0), place, var) else {
+        let Some(steps) = self.field_steps(pou, place, var) else {
             return;
         };
         let from = Operand {
@@ -507,6 +526,9 @@ impl Body<'_, '_> {
             return None;
         };
         let place = self.writable(&operand)?;
+        if let Some(place) = self.as_base(&place, operand.ty, var.ty) {
+            return Some(self.path_of(&place, operand.range));
+        }
         if self.an.types.strip(operand.ty) != self.an.types.strip(var.ty) {
             if var.ty != TypeId::ERROR {
                 self.mismatch(&operand, var.ty);
@@ -551,19 +573,7 @@ impl Body<'_, '_> {
             let message = "arguments are given either all by name or all by position";
             self.error(Message::E3017, range, message);
         }
-        let parameters: Vec<Var> = self
-            .an
-            .pou(pou)
-            .vars
-            .iter()
-            .filter(|var| {
-                matches!(
-                    var.section,
-                    SectionKind::Input | SectionKind::Output | SectionKind::InOut
-                )
-            })
-            .cloned()
-            .collect();
+        let parameters = self.an.all_parameters(pou);
         if positional > parameters.len() {
             let message = format!(
                 "{positional} arguments are given but `{}` has {} parameters",

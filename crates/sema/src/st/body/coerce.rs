@@ -110,6 +110,7 @@ impl Body<'_, '_> {
                 };
                 Some(self.add_expr(kind, base.storage(), operand.range))
             }
+            (_, TypeKind::Interface(interface)) => self.to_interface(operand, interface),
             (TypeKind::Reference(_, a), TypeKind::Reference(_, b)) if self.refers_alike(a, b) => {
                 Some(self.raw(operand))
             }
@@ -123,11 +124,6 @@ impl Body<'_, '_> {
     /// The elementary type behind a type, named values included.
     fn named_base(&self, ty: TypeId) -> Option<El> {
         self.an.types.elementary(ty)
-    }
-
-    /// Whether a reference to one may be used as one to the other.
-    fn refers_alike(&self, from: TypeId, to: TypeId) -> bool {
-        self.an.types.strip(from) == self.an.types.strip(to)
     }
 
     fn widen(&mut self, operand: &Operand, from: El, to: El) -> Option<ExprId> {
@@ -229,6 +225,11 @@ impl Body<'_, '_> {
         range: TextRange,
     ) {
         let same = self.an.types.strip(ty) == self.an.types.strip(operand.ty);
+        if let (true, TypeKind::Instance(pou)) = (same, self.an.types.base(ty)) {
+            let pou = *pou;
+            self.copy_instance(pou, target, from, range);
+            return;
+        }
         if same {
             let to = self.path_of(target, range);
             let from = self.path_of(from, operand.range);

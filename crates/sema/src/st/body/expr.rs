@@ -69,9 +69,8 @@ impl Body<'_, '_> {
                 "only a variable has a reference",
             );
         };
-        if matches!(place.root, crate::hir::code::Root::Local(_)) {
-            let message = "this variable is gone when the call ends, so nothing can refer to it";
-            return self.error(Message::E3002, target.range, message);
+        if let Some(why) = self.no_reference(place) {
+            return self.error(Message::E3002, target.range, why);
         }
         let place = place.clone();
         let path = self.path_of(&place, target.range);

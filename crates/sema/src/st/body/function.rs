@@ -1,6 +1,7 @@
 //! Calls of functions and methods, of the user and of the library.
 
 use super::library::Given;
+use super::object::{Run, Target, function_target};
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{
     BinaryOp as Op, Call, ExprId, ExprKind, PathId, Root, StmtKind, UnaryOp as Unary,
@@ -24,7 +25,7 @@ impl Body<'_, '_> {
     ) -> Operand {
         let first = functions[0];
         if !self.an.is_library(self.an.pou(first).unit) {
-            return self.user_call(first, None, arguments, range);
+            return self.user_call(function_target(first), arguments, range);
         }
         if let Some(value) = self.type_query(first, arguments, range) {
             return value;
@@ -55,15 +56,16 @@ impl Body<'_, '_> {
     /// A call of a function or method of the user.
     pub(super) fn user_call(
         &mut self,
-        callee: PouId,
-        place: Option<Place>,
+        target: Target,
         arguments: st::List<Argument>,
         range: TextRange,
     ) -> Operand {
+        let callee = target.signature;
         self.an.complete(callee);
-        let Some(callee) = self.open_instance(callee, arguments, range) else {
+        let Some(target) = self.open_target(target, arguments, range) else {
             return Operand::error(range);
         };
+        let callee = target.signature;
         let matched = self.matched(callee, arguments, range);
         self.require_in_outs(callee, &matched, range);
         let (mut given, mut outputs) = (Vec::new(), Vec::new());
@@ -84,7 +86,7 @@ impl Body<'_, '_> {
             }
         }
         let eno = self.eno_target(arguments);
-        self.finish_call(callee, place, given, outputs, eno, range)
+        self.finish_call(target, given, outputs, eno, range)
     }
 
     /// The unit itself, or where it has open arrays the one for the arrays of this call; `None` after a
@@ -132,17 +134,48 @@ impl Body<'_, '_> {
         Some(self.an.instance(callee, bindings))
     }
 
+    /// As `open_instance`, with the body that runs.
+    fn open_target(
+        &mut self,
+        target: Target,
+        arguments: st::List<Argument>,
+        range: TextRange,
+    ) -> Option<Target> {
+        let signature = self.open_instance(target.signature, arguments, range)?;
+        if signature == target.signature {
+            return Some(target);
+        }
+        let run = match target.run {
+            Run::Function => Run::Function,
+            Run::On { body, instance } if body == target.signature => Run::On {
+                body: signature,
+                instance,
+            },
+            Run::On { body, instance } => Run::On {
+                body: self.open_instance(body, arguments, range)?,
+                instance,
+            },
+            Run::Choose { .. } => {
+                let message =
+                    "a call with open arrays that is chosen at run time is not compiled yet";
+                self.error(Message::E2010, range, message);
+                return None;
+            }
+        };
+        Some(Target { signature, run })
+    }
+
     /// Writes a call down: omitted inputs take their defaults, outputs go where they are wanted.
     pub(super) fn finish_call(
         &mut self,
-        callee: PouId,
-        place: Option<Place>,
+        target: Target,
         given: Vec<(Var, Operand)>,
         outputs: Vec<(Var, Argument)>,
         eno: Option<Argument>,
         range: TextRange,
     ) -> Operand {
-        let shape = self.an.call_shape(callee);
+        let callee = target.signature;
+        let shape = self.shape_of(&target);
         let pou = self.an.pou(callee).clone();
         let find = |name| {
             given
@@ -151,8 +184,10 @@ impl Body<'_, '_> {
                 .map(|(_, o)| o.clone())
         };
         let (mut refs, mut args, mut after) = (Vec::new(), Vec::new(), Vec::new());
-        if let Some(place) = &place {
-            refs.push(self.path_of(place, range));
+        match &target.run {
+            Run::Function => {}
+            Run::On { instance, .. } => refs.push(self.path_of(instance, range)),
+            Run::Choose { address, .. } => args.push(*address),
         }
         for &index in &shape.refs {
             let var = &pou.vars[index];
@@ -194,7 +229,7 @@ impl Body<'_, '_> {
             _ => None,
         };
         let call = Call {
-            callee: self.an.want(callee),
+            callee: self.run_unit(&target),
             refs,
             args,
             outputs: Vec::new(),
@@ -306,6 +341,9 @@ impl Body<'_, '_> {
             return None;
         };
         let place = self.writable(operand)?;
+        if let Some(place) = self.as_base(&place, operand.ty, var.ty) {
+            return Some(self.path_of(&place, operand.range));
+        }
         if self.an.types.strip(operand.ty) != self.an.types.strip(var.ty) {
             self.mismatch(operand, var.ty);
             return None;

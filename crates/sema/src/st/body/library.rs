@@ -1,6 +1,7 @@
 //! Calls of the library: overloads, generic names, and what they stand for in a call.
 
 use super::generic::Generic;
+use super::object::function_target;
 use super::{Body, Operand};
 use crate::st::constant::Const;
 use crate::st::elementary::El;
@@ -269,7 +270,7 @@ impl Body<'_, '_> {
                 Some((var.clone(), argument))
             })
             .collect();
-        self.finish_call(instance, None, arguments, outputs, eno, range)
+        self.finish_call(function_target(instance), arguments, outputs, eno, range)
     }
 
     /// Operands of an intrinsic in the types that the library writes for them.
@@ -671,18 +672,5 @@ impl crate::st::analysis::Analysis<'_> {
     pub(super) fn named_elementary(&self, name: &str) -> Option<TypeId> {
         let symbol = self.names.find(name)?;
         self.elementary_names.get(&symbol).copied()
-    }
-
-    /// A method of a block or class, or of what it extends.
-    pub(crate) fn method(&self, pou: PouId, name: Symbol) -> Option<PouId> {
-        let mut at = Some(pou);
-        while let Some(id) = at {
-            let signature = self.pou(id);
-            if let Some((_, method)) = signature.members.iter().find(|(known, _)| *known == name) {
-                return Some(*method);
-            }
-            at = signature.extends.first().copied();
-        }
-        None
     }
 }

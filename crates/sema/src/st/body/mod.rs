@@ -13,6 +13,7 @@ mod generic;
 mod intrinsic;
 mod library;
 mod literal;
+mod object;
 mod operand;
 mod operator;
 mod place;
@@ -206,7 +207,7 @@ impl Body<'_, '_> {
         let shape = self.an.call_shape(id);
         let pou = self.an.pou(id).clone();
         if shape.instance {
-            let of = pou.owner.unwrap_or(id);
+            let of = self.an.instance_of(id);
             let ty = Type::Struct(self.an.instance_struct(of));
             self.add_ref("this".to_owned(), ty);
         }

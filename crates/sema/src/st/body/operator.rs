@@ -487,7 +487,11 @@ impl Body<'_, '_> {
             (TypeKind::Null, TypeKind::Reference(..) | TypeKind::Interface(_)) if equality => {
                 Some(b)
             }
-            (TypeKind::Reference(_, x), TypeKind::Reference(_, y)) if x == y && equality => Some(a),
+            (TypeKind::Reference(_, x), TypeKind::Reference(_, y))
+                if equality && (self.refers_alike(*x, *y) || self.refers_alike(*y, *x)) =>
+            {
+                Some(a)
+            }
             (TypeKind::Interface(_), TypeKind::Interface(_)) if equality => Some(a),
             (TypeKind::Text { wide: x, .. }, TypeKind::Text { wide: y, .. }) if x == y => Some(a),
             (TypeKind::Text { length: 1, .. }, TypeKind::Elementary(El::Char | El::Wchar)) => {

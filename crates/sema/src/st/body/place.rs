@@ -64,7 +64,10 @@ impl Body<'_, '_> {
             }
             None => {}
         }
-        let def = self.an.lookup(self.namespace, name).first().copied();
+        let Some(defs) = self.an.found_name(self.unit, self.namespace, name, range) else {
+            return Operand::error(range);
+        };
+        let def = defs.first().copied();
         let text = self.text(name);
         match def {
             Some(Def::Global(id)) => self.global(id, name, range),
@@ -109,27 +112,7 @@ impl Body<'_, '_> {
         {
             return Some(self.result_variable(ty, range));
         }
-        let owner = signature.owner.unwrap_or(pou);
-        let steps = Vec::new();
-        self.inherited(owner, name, steps, owner != pou, range)
-    }
-
-    /// A variable of an instance or of what it extends, reached through the first reference.
-    fn inherited(
-        &mut self,
-        pou: PouId,
-        name: Symbol,
-        mut steps: Vec<PathStep>,
-        own: bool,
-        range: TextRange,
-    ) -> Option<Operand> {
-        let signature = self.an.pou(pou);
-        if own && let Some(var) = signature.var(name).cloned() {
-            return Some(self.instance_variable(Root::Ref(0), steps, &var, false, range));
-        }
-        let base = *signature.extends.first()?;
-        steps.push(PathStep::Field(0));
-        self.inherited(base, name, steps, true, range)
+        self.member_of_this(name, range)
     }
 
     fn result_variable(&mut self, ty: TypeId, range: TextRange) -> Operand {
@@ -143,6 +126,7 @@ impl Body<'_, '_> {
 
     fn own_variable(&mut self, pou: PouId, index: usize, range: TextRange) -> Operand {
         let var = self.an.pou(pou).vars[index].clone();
+        let pou_home = self.an.pou(pou).owner.unwrap_or(pou);
         match &var.storage {
             Storage::Local => match self.locals.get(index).copied().flatten() {
                 Some(local) => {
@@ -156,7 +140,8 @@ impl Body<'_, '_> {
                 self.place_operand(Root::Ref(*reference), Vec::new(), rights, var.ty, range)
             }
             Storage::Field(_) | Storage::Global(_) | Storage::Const(_) | Storage::Located(_) => {
-                self.instance_variable(Root::Ref(0), Vec::new(), &var, false, range)
+                let this = self.this_as(pou_home);
+                self.instance_variable(this.root, this.steps, &var, false, range)
             }
         }
     }
@@ -166,7 +151,7 @@ impl Body<'_, '_> {
     }
 
     /// A variable of an instance at a place.
-    fn instance_variable(
+    pub(super) fn instance_variable(
         &mut self,
         root: Root,
         mut steps: Vec<PathStep>,
@@ -200,7 +185,7 @@ impl Body<'_, '_> {
         }
     }
 
-    fn place_operand(
+    pub(super) fn place_operand(
         &mut self,
         root: Root,
         steps: Vec<PathStep>,
@@ -296,21 +281,6 @@ impl Body<'_, '_> {
         }
     }
 
-    fn this(&mut self, range: TextRange) -> Operand {
-        let Some(owner) = self.pou.map(|pou| self.an.pou(pou).owner.unwrap_or(pou)) else {
-            return self.not_constant(range);
-        };
-        if !self.an.pou(owner).has_instances() {
-            return self.error(
-                Message::E3003,
-                range,
-                "THIS stands in blocks, classes and methods only",
-            );
-        }
-        let ty = self.an.types.intern(TypeKind::Instance(owner));
-        self.place_operand(Root::Ref(0), Vec::new(), Rights::All, ty, range)
-    }
-
     /// `base.member`.
     fn member(
         &mut self,
@@ -342,7 +312,10 @@ impl Body<'_, '_> {
                 steps.push(PathStep::Field(position));
                 self.place_operand(root, steps, rights, ty, range)
             }
-            TypeKind::Instance(pou) => self.instance_member(pou, root, steps, member, range),
+            TypeKind::Instance(pou) => {
+                let place = place.clone();
+                self.instance_member(pou, &place, member, range)
+            }
             _ => {
                 let message = format!("{} has no members", self.type_name(base.ty));
                 self.error(Message::E1002, member.range, message)
@@ -350,61 +323,12 @@ impl Body<'_, '_> {
         }
     }
 
-    /// A variable of an instance, seen from outside.
-    fn instance_member(
+    pub(super) fn no_member(
         &mut self,
-        pou: PouId,
-        root: Root,
-        mut steps: Vec<PathStep>,
+        ty: TypeId,
         member: st::Ident,
-        range: TextRange,
+        candidates: Vec<Symbol>,
     ) -> Operand {
-        let mut at = pou;
-        loop {
-            if let Some(var) = self.an.pou(at).var(member.name).cloned() {
-                let inside = root == Root::Ref(0)
-                    && steps.iter().all(|step| *step == PathStep::Field(0))
-                    && self
-                        .pou
-                        .is_some_and(|own| self.an.pou(own).owner.unwrap_or(own) == pou);
-                let lasting = !matches!(var.storage, Storage::Local | Storage::Ref(_));
-                if lasting && !inside && !self.visible_outside(&var, at) {
-                    let message = format!("`{}` is private", self.text(member.name));
-                    let diagnostic =
-                        Diagnostic::new(Message::E1015, self.span(member.range), message);
-                    let declared = self.an.span(self.an.pou(at).unit, var.range);
-                    self.report(diagnostic.also(declared, "declared here"));
-                    return Operand::error(range);
-                }
-                return self.instance_variable(root, steps, &var, !inside, range);
-            }
-            let Some(&base) = self.an.pou(at).extends.first() else {
-                break;
-            };
-            steps.push(PathStep::Field(0));
-            at = base;
-        }
-        let vars = &self.an.pou(pou).vars;
-        let candidates = vars.iter().map(|var| var.name).collect();
-        let ty = self.an.types.intern(TypeKind::Instance(pou));
-        self.no_member(ty, member, candidates)
-    }
-
-    /// Inputs and outputs can be seen by all; other variables if they are PUBLIC.
-    fn visible_outside(&self, var: &Var, _of: PouId) -> bool {
-        match var.section {
-            SectionKind::Input | SectionKind::Output | SectionKind::InOut => true,
-            _ => {
-                self.an.options.codesys
-                    || matches!(
-                        var.access,
-                        Some(st::ModifierKind::Public | st::ModifierKind::Internal)
-                    )
-            }
-        }
-    }
-
-    fn no_member(&mut self, ty: TypeId, member: st::Ident, candidates: Vec<Symbol>) -> Operand {
         let name = self.text(member.name);
         let message = format!("{} has no member `{name}`", self.type_name(ty));
         let mut diagnostic = Diagnostic::new(Message::E1002, self.span(member.range), message);
@@ -435,8 +359,13 @@ impl Body<'_, '_> {
             .copied()?;
         match def {
             Def::Namespace(namespace) => {
-                let inner = self.an.lookup_in(namespace, member.name).first().copied();
-                Some(match inner {
+                let Some(inner) = self
+                    .an
+                    .found_in(self.unit, self.namespace, namespace, member)
+                else {
+                    return Some(Operand::error(range));
+                };
+                Some(match inner.first().copied() {
                     Some(Def::Global(id)) => self.global_place(id, false, range),
                     Some(_) => {
                         let message = format!("`{}` is no variable", self.text(member.name));
@@ -708,6 +637,9 @@ impl Body<'_, '_> {
 
     /// `base^`.
     fn deref(&mut self, base: st::Id<st::Expr>, range: TextRange) -> Operand {
+        if self.an.options.codesys && self.arena()[base].kind == Written::This {
+            return self.this(range);
+        }
         let base = self.place(base, None);
         if base.is_error() {
             return base;
@@ -728,6 +660,9 @@ impl Body<'_, '_> {
         target: TypeId,
         range: TextRange,
     ) -> Operand {
+        if let TypeKind::Instance(pou) = *self.an.types.base(target) {
+            self.an.complete(pou);
+        }
         let address = self.raw(reference);
         let ty = self.an.storage(target);
         let root = Root::Deref {

@@ -248,6 +248,10 @@ impl Body<'_, '_> {
         value: st::Id<st::Expr>,
         range: TextRange,
     ) {
+        if op == AssignOp::Attempt {
+            self.attempt(target, value, range);
+            return;
+        }
         let place = self.place(target, None);
         let value = self.expr(value, None);
         if place.is_error() || value.is_error() {

@@ -1,0 +1,724 @@
+//! Objects: whose members are seen, which body runs, what references to them may become.
+
+use super::call::Callee;
+use super::{Body, Operand, OperandKind, Place, Rights};
+use crate::hir::code::{Call, ExprId, ExprKind, PathStep, Root, StmtKind};
+use crate::hir::{self, Elementary, Type};
+use crate::st::instance::InstancePart;
+use crate::st::signature::{Part, PouId, Storage, Var};
+use crate::st::signatures::CallShape;
+use crate::st::types::{TypeId, TypeKind};
+use iecc_ast::Symbol;
+use iecc_ast::st::{self, ExprKind as Written, ModifierKind, PouKind, SectionKind};
+use iecc_diag::{Code as Message, Diagnostic};
+use iecc_source::{Span, TextRange};
+
+/// A method or function with what it runs on.
+pub(crate) struct Target {
+    /// Whose parameters count.
+    pub signature: PouId,
+    pub run: Run,
+}
+
+/// Which body runs, and on what.
+pub(crate) enum Run {
+    /// A function.
+    Function,
+    /// This one, on this instance.
+    On { body: PouId, instance: Place },
+    /// One that depends on the type of the instance at an address.
+    Choose {
+        unit: hir::PouId,
+        address: ExprId,
+        eno: bool,
+    },
+}
+
+/// Who may use a member.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Access {
+    Public,
+    Protected,
+    Private,
+    Internal,
+}
+
+impl Access {
+    fn of(modifiers: impl IntoIterator<Item = ModifierKind>) -> Option<Self> {
+        modifiers.into_iter().find_map(|modifier| match modifier {
+            ModifierKind::Public => Some(Self::Public),
+            ModifierKind::Protected => Some(Self::Protected),
+            ModifierKind::Private => Some(Self::Private),
+            ModifierKind::Internal => Some(Self::Internal),
+            ModifierKind::Constant
+            | ModifierKind::Retain
+            | ModifierKind::NonRetain
+            | ModifierKind::Persistent
+            | ModifierKind::Final
+            | ModifierKind::Abstract
+            | ModifierKind::Override => None,
+        })
+    }
+
+    fn as_str(self) -> &'static str {
+        match self {
+            Self::Public => "PUBLIC",
+            Self::Protected => "PROTECTED",
+            Self::Private => "PRIVATE",
+            Self::Internal => "INTERNAL",
+        }
+    }
+}
+
+/// A function.
+pub(super) fn function_target(function: PouId) -> Target {
+    Target {
+        signature: function,
+        run: Run::Function,
+    }
+}
+
+impl Body<'_, '_> {
+    /// How a target is called.
+    pub(super) fn shape_of(&self, target: &Target) -> CallShape {
+        let shape = self.an.call_shape(target.signature);
+        let eno = match &target.run {
+            Run::Function => shape.eno,
+            Run::On { body, .. } => self.an.call_shape(*body).eno,
+            Run::Choose { eno, .. } => *eno,
+        };
+        CallShape { eno, ..shape }
+    }
+
+    /// The body that a call runs.
+    pub(super) fn run_unit(&mut self, target: &Target) -> hir::PouId {
+        match &target.run {
+            Run::Function => self.an.want(target.signature),
+            Run::On { body, .. } => {
+                self.an.complete(*body);
+                self.an.want(*body)
+            }
+            Run::Choose { unit, .. } => *unit,
+        }
+    }
+
+    /// The class or block that the body belongs to.
+    fn home(&self) -> Option<PouId> {
+        let pou = self.pou?;
+        let home = self.an.pou(pou).owner.unwrap_or(pou);
+        self.an.pou(home).has_instances().then_some(home)
+    }
+
+    /// Whether a place begins with the instance that the body works on.
+    fn begins_with_this(&self, place: &Place) -> bool {
+        place.root == Root::Ref(0) && self.home().is_some()
+    }
+
+    /// The steps from one type to one that it extends.
+    fn base_steps(&self, from: PouId, to: PouId) -> impl Iterator<Item = PathStep> + use<> {
+        let distance = self.an.base_distance(from, to).unwrap_or(0);
+        std::iter::repeat_n(PathStep::Field(0), distance)
+    }
+
+    /// The instance the body works on, as a type that it extends or is.
+    pub(super) fn this_as(&self, ty: PouId) -> Place {
+        let of = self.pou.map_or(ty, |pou| self.an.instance_of(pou));
+        Place {
+            root: Root::Ref(0),
+            steps: self.base_steps(of, ty).collect(),
+            rights: Rights::All,
+        }
+    }
+
+    /// `THIS`.
+    pub(super) fn this(&mut self, range: TextRange) -> Operand {
+        let Some(home) = self.home() else {
+            let message = "THIS stands in blocks, classes and methods only";
+            return self.error(Message::E3003, range, message);
+        };
+        let ty = self.an.types.intern(TypeKind::Instance(home));
+        let place = self.this_as(home);
+        self.place_operand(place.root, place.steps, place.rights, ty, range)
+    }
+
+    /// A variable of the instance that the body works on.
+    pub(super) fn member_of_this(&mut self, name: Symbol, range: TextRange) -> Option<Operand> {
+        let home = self.home()?;
+        let (of, index) = self.an.instance_var(home, name)?;
+        let var = self.an.pou(of).vars[index].clone();
+        let in_method = self
+            .pou
+            .is_some_and(|pou| self.an.pou(pou).part != Part::Whole);
+        if in_method && var.edge.is_some() {
+            let text = self.text(name);
+            let message = format!("methods cannot use `{text}`, whose edge only the body sees");
+            return Some(self.error(Message::E1013, range, message));
+        }
+        if !self.check_variable(&var, of, range) {
+            return Some(Operand::error(range));
+        }
+        let this = self.this_as(of);
+        Some(self.instance_variable(this.root, this.steps, &var, false, range))
+    }
+
+    /// `base.member`, of an instance.
+    pub(super) fn instance_member(
+        &mut self,
+        pou: PouId,
+        place: &Place,
+        member: st::Ident,
+        range: TextRange,
+    ) -> Operand {
+        let Some((of, index)) = self.an.instance_var(pou, member.name) else {
+            return self.no_instance_member(pou, member);
+        };
+        let var = self.an.pou(of).vars[index].clone();
+        if !self.check_variable(&var, of, member.range) {
+            return Operand::error(range);
+        }
+        let own = self.begins_with_this(place)
+            && place.steps.iter().all(|step| *step == PathStep::Field(0))
+            && self.home().is_some_and(|home| home == pou);
+        let mut steps = place.steps.clone();
+        steps.extend(self.base_steps(pou, of));
+        self.instance_variable(place.root, steps, &var, !own, range)
+    }
+
+    fn no_instance_member(&mut self, pou: PouId, member: st::Ident) -> Operand {
+        let ty = self.an.types.intern(TypeKind::Instance(pou));
+        if self.an.method(pou, member.name).is_some() {
+            let text = self.text(member.name);
+            let message = format!("method `{text}` is called with parentheses");
+            return self.error(Message::E3004, member.range, message);
+        }
+        let lineage = self.an.lineage(pou);
+        let vars = lineage.iter().flat_map(|id| self.an.pou(*id).vars.iter());
+        let candidates = vars.map(|var| var.name).collect();
+        self.no_member(ty, member, candidates)
+    }
+
+    fn variable_access(&self, var: &Var) -> Access {
+        match var.section {
+            SectionKind::Input | SectionKind::Output | SectionKind::InOut => Access::Public,
+            _ if self.an.options.codesys => Access::of(var.access).unwrap_or(Access::Public),
+            _ => Access::of(var.access).unwrap_or(Access::Protected),
+        }
+    }
+
+    fn check_variable(&mut self, var: &Var, of: PouId, range: TextRange) -> bool {
+        let declared = self.an.span(self.an.pou(of).unit, var.range);
+        self.check_access(self.variable_access(var), of, var.name, range, declared)
+    }
+
+    fn check_method(&mut self, method: PouId, range: TextRange) -> bool {
+        let pou = self.an.pou(method);
+        let Some(of) = pou.owner else { return true };
+        let default = if self.an.options.codesys || !self.an.pou(of).has_instances() {
+            Access::Public
+        } else {
+            Access::Protected
+        };
+        let access = Access::of(pou.modifiers.iter().copied()).unwrap_or(default);
+        let (name, declared) = (pou.name, pou.span);
+        self.check_access(access, of, name, range, declared)
+    }
+
+    fn check_access(
+        &mut self,
+        access: Access,
+        of: PouId,
+        name: Symbol,
+        range: TextRange,
+        declared: Span,
+    ) -> bool {
+        let home = self.home();
+        let (allowed, who) = match access {
+            Access::Public => (true, "all"),
+            Access::Private => (home == Some(of), "its own class or block"),
+            Access::Protected => (
+                home.is_some_and(|home| self.an.conforms(home, of)),
+                "its class or block and what extends it",
+            ),
+            Access::Internal => {
+                let namespace = self.an.home_namespace(self.an.pou(of).namespace);
+                (
+                    self.an.is_inside(self.namespace, namespace),
+                    "its namespace",
+                )
+            }
+        };
+        if !allowed {
+            let text = self.text(name);
+            let message = format!("`{text}` is {}: only {who} can use it", access.as_str());
+            let diagnostic = Diagnostic::new(Message::E1015, self.span(range), message);
+            self.report(diagnostic.also(declared, "declared here"));
+        }
+        allowed
+    }
+
+    // What runs.
+
+    /// A method by its name alone, of the instance that the body works on.
+    pub(super) fn own_method(&mut self, name: Symbol, range: TextRange) -> Option<Callee> {
+        let home = self.home()?;
+        let signature = self.an.method(home, name)?;
+        if !self.check_method(signature, range) {
+            return Some(Callee::Mistake);
+        }
+        let of = self.an.instance_of(self.pou?);
+        let this = self.this_as(of);
+        let run = self.run(of, &this, Some(name), signature, range);
+        Some(Callee::Method(Target { signature, run }))
+    }
+
+    /// `operand.name`, if that is a method.
+    pub(super) fn method_callee(&mut self, operand: &Operand, name: st::Ident) -> Option<Callee> {
+        let of = match *self.an.types.base(operand.ty) {
+            TypeKind::Instance(of) | TypeKind::Interface(of) => of,
+            _ => return None,
+        };
+        let Some(signature) = self.an.method(of, name.name) else {
+            if self.an.pou(of).has_instances() {
+                return None;
+            }
+            self.no_method(of, name);
+            return Some(Callee::Mistake);
+        };
+        if !self.check_method(signature, name.range) {
+            return Some(Callee::Mistake);
+        }
+        let run = match (&operand.kind, self.an.pou(of).has_instances()) {
+            (OperandKind::Place(place), true) => {
+                let place = place.clone();
+                self.run(of, &place, Some(name.name), signature, operand.range)
+            }
+            _ => self.run_through(of, operand, name.name, signature),
+        };
+        Some(Callee::Method(Target { signature, run }))
+    }
+
+    fn no_method(&mut self, of: PouId, name: st::Ident) {
+        let text = self.text(name.name);
+        let message = format!("{} has no method `{text}`", self.text(self.an.pou(of).name));
+        let mut diagnostic = Diagnostic::new(Message::E1018, self.span(name.range), message);
+        let all = self.an.with_ancestors(of);
+        let members = all.iter().flat_map(|id| self.an.pou(*id).members.iter());
+        let candidates: Vec<Symbol> = members.map(|(name, _)| *name).collect();
+        if let Some(close) = self.an.similar(name.name, candidates) {
+            diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
+        }
+        self.report(diagnostic);
+    }
+
+    /// What runs for a method, or for a call of the block, on the instance at a place.
+    pub(super) fn run(
+        &mut self,
+        of: PouId,
+        place: &Place,
+        method: Option<Symbol>,
+        signature: PouId,
+        range: TextRange,
+    ) -> Run {
+        if self.may_be_derived(place)
+            && let Some(dispatcher) = self.an.dispatcher(of, method, signature)
+        {
+            let path = self.path_of(place, range);
+            return Run::Choose {
+                unit: dispatcher.unit,
+                address: self.add_expr(ExprKind::Address(path), Elementary::Ulint, range),
+                eno: dispatcher.eno,
+            };
+        }
+        let body = self.an.body_of(of, method).unwrap_or(signature);
+        self.run_on(body, of, place.clone())
+    }
+
+    fn run_on(&mut self, body: PouId, of: PouId, mut instance: Place) -> Run {
+        let wanted = self.an.instance_of(body);
+        instance.steps.extend(self.base_steps(of, wanted));
+        Run::On { body, instance }
+    }
+
+    /// What runs for a method of whatever an interface stands for.
+    fn run_through(
+        &mut self,
+        of: PouId,
+        operand: &Operand,
+        method: Symbol,
+        signature: PouId,
+    ) -> Run {
+        let address = self.raw(operand);
+        let root = Root::Deref {
+            address,
+            ty: Type::Elementary(Elementary::Udint),
+            checked: false,
+        };
+        // NULL is to be found here, where the user wrote the call.
+        let path = self.add_path(root, Vec::new(), operand.range);
+        let address = self.add_expr(ExprKind::Address(path), Elementary::Ulint, operand.range);
+        let dispatcher = self.an.dispatcher(of, Some(method), signature);
+        let dispatcher = dispatcher.expect("interfaces always choose");
+        Run::Choose {
+            unit: dispatcher.unit,
+            address,
+            eno: dispatcher.eno,
+        }
+    }
+
+    /// Whether what lies at a place may be an instance of something that extends its type: behind
+    /// references, and of in-outs.
+    fn may_be_derived(&self, place: &Place) -> bool {
+        let passed = match place.root {
+            Root::Deref { .. } => true,
+            Root::Ref(_) => !self.begins_with_this(place),
+            Root::Tag(_) | Root::Local(_) => false,
+        };
+        passed && place.steps.is_empty()
+    }
+
+    /// `SUPER.name`.
+    pub(super) fn super_method(&mut self, name: st::Ident, range: TextRange) -> Callee {
+        let Some(base) = self.base(range) else {
+            return Callee::Mistake;
+        };
+        let Some(signature) = self.an.method(base, name.name) else {
+            self.no_method(base, name);
+            return Callee::Mistake;
+        };
+        if !self.check_method(signature, name.range) {
+            return Callee::Mistake;
+        }
+        if self
+            .an
+            .pou(signature)
+            .modifiers
+            .contains(&ModifierKind::Abstract)
+        {
+            let text = self.text(name.name);
+            let message = format!("`{text}` is ABSTRACT in the base, so there is nothing to run");
+            self.error(Message::E1046, name.range, message);
+            return Callee::Mistake;
+        }
+        let run = self.run_base(signature);
+        Callee::Method(Target { signature, run })
+    }
+
+    fn run_base(&mut self, body: PouId) -> Run {
+        let of = self.pou.map_or(body, |pou| self.an.instance_of(pou));
+        let body = self.an.body_for(body, of);
+        let this = self.this_as(of);
+        self.run_on(body, of, this)
+    }
+
+    fn base(&mut self, range: TextRange) -> Option<PouId> {
+        let base = self.home().and_then(|home| self.an.base_of(home));
+        if base.is_none() {
+            let message = "SUPER stands in classes and blocks that extend another";
+            self.error(Message::E3003, range, message);
+        }
+        base
+    }
+
+    /// `SUPER()`: the body of the base block.
+    pub(super) fn super_call(&mut self, arguments: st::List<st::Argument>, range: TextRange) {
+        let Some(base) = self.base(range) else { return };
+        let in_body = self
+            .pou
+            .is_some_and(|pou| self.an.pou(pou).part == Part::Whole);
+        let message = if self.an.pou(base).kind != PouKind::FunctionBlock {
+            "a class has no body that SUPER() could run"
+        } else if !in_body {
+            "SUPER() stands in the body of a block; methods call SUPER.method()"
+        } else if !arguments.is_empty() {
+            "SUPER() takes no arguments: the base has the same inputs"
+        } else {
+            let run = self.run_base(base);
+            self.call_base(run, range);
+            return;
+        };
+        self.error(Message::E3003, range, message);
+    }
+
+    /// The base body gets the same in-outs.
+    fn call_base(&mut self, run: Run, range: TextRange) {
+        let Run::On { body, instance } = run else {
+            unreachable!("the type of the base is known")
+        };
+        let shape = self.an.call_shape(body);
+        let mut refs = vec![self.path_of(&instance, range)];
+        for index in shape.refs {
+            let name = self.an.pou(body).vars[index].name;
+            let own = self.pou.and_then(|pou| self.an.pou(pou).var(name));
+            let Some(Storage::Ref(reference)) = own.map(|var| var.storage.clone()) else {
+                unreachable!("in-outs are inherited")
+            };
+            refs.push(self.add_path(Root::Ref(reference), Vec::new(), range));
+        }
+        let callee = self.an.want(body);
+        let call = self.add_call(Call {
+            callee,
+            refs,
+            args: Vec::new(),
+            outputs: Vec::new(),
+        });
+        let value = self.add_expr(ExprKind::Call(call), Elementary::Bool, range);
+        self.before(StmtKind::Eval(value), range);
+    }
+
+    /// `THIS^` and `SUPER^` of CODESYS, where they are pointers, as `THIS` and `SUPER`.
+    pub(super) fn pointed_self(&self, id: st::Id<st::Expr>) -> st::Id<st::Expr> {
+        match self.arena()[id].kind {
+            Written::Deref(base)
+                if self.an.options.codesys
+                    && matches!(self.arena()[base].kind, Written::This | Written::Super) =>
+            {
+                base
+            }
+            _ => id,
+        }
+    }
+
+    // What becomes of references and instances.
+
+    /// Why nothing may refer to a place, if so.
+    pub(super) fn no_reference(&self, place: &Place) -> Option<&'static str> {
+        if matches!(place.steps.last(), Some(PathStep::Bits { .. })) {
+            return Some("part of a bit string has no reference");
+        }
+        if place.rights == Rights::Constant {
+            return Some("a constant has no reference");
+        }
+        let temporary = match place.root {
+            Root::Local(_) => true,
+            Root::Ref(reference) => self.is_passed_copy(reference),
+            Root::Tag(_) | Root::Deref { .. } => false,
+        };
+        temporary.then_some("this variable is gone when the call ends, so nothing can refer to it")
+    }
+
+    /// Whether a reference parameter stands for a copy: an input, an output, the result.
+    fn is_passed_copy(&self, reference: u32) -> bool {
+        if self.home().is_some() && reference == 0 {
+            return false;
+        }
+        let Some(pou) = self.pou else { return false };
+        let mut vars = self.an.pou(pou).vars.iter();
+        let var = vars.find(|var| var.storage == Storage::Ref(reference));
+        var.is_none_or(|var| var.section != SectionKind::InOut)
+    }
+
+    /// The place of an instance as one of a type that it extends.
+    pub(super) fn as_base(&self, place: &Place, from: TypeId, to: TypeId) -> Option<Place> {
+        let types = &self.an.types;
+        let (TypeKind::Instance(from), TypeKind::Instance(to)) = (types.base(from), types.base(to))
+        else {
+            return None;
+        };
+        let distance = self.an.base_distance(*from, *to)?;
+        let mut place = place.clone();
+        let steps = std::iter::repeat_n(PathStep::Field(0), distance);
+        place.steps.extend(steps);
+        Some(place)
+    }
+
+    /// Whether what a reference to one type stands for may be looked at as the other.
+    pub(super) fn refers_alike(&self, from: TypeId, to: TypeId) -> bool {
+        let types = &self.an.types;
+        match (types.base(from), types.base(to)) {
+            (TypeKind::Instance(from), TypeKind::Instance(to)) => self.an.conforms(*from, *to),
+            _ => types.strip(from) == types.strip(to),
+        }
+    }
+
+    /// An instance or interface as an interface.
+    pub(super) fn to_interface(&mut self, operand: &Operand, interface: PouId) -> Option<ExprId> {
+        match (self.an.types.base(operand.ty).clone(), &operand.kind) {
+            (TypeKind::Interface(from), _) if self.an.conforms(from, interface) => {
+                Some(self.raw(operand))
+            }
+            (TypeKind::Instance(from), OperandKind::Place(place))
+                if self.an.conforms(from, interface) =>
+            {
+                let path = self.path_of(&place.clone(), operand.range);
+                Some(self.add_expr(ExprKind::Address(path), Elementary::Ulint, operand.range))
+            }
+            _ => None,
+        }
+    }
+
+    /// What an attempt may turn into something else: an interface, or a reference to an instance.
+    fn attempted(&self, ty: TypeId) -> Option<PouId> {
+        match *self.an.types.base(ty) {
+            TypeKind::Interface(pou) => Some(pou),
+            TypeKind::Reference(_, target) => match *self.an.types.base(target) {
+                TypeKind::Instance(pou) => Some(pou),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// `target ?= value`.
+    pub(super) fn attempt(
+        &mut self,
+        target: st::Id<st::Expr>,
+        value: st::Id<st::Expr>,
+        range: TextRange,
+    ) {
+        let place = self.place(target, None);
+        let want = (!place.is_error()).then_some(place.ty);
+        let value = self.expr(value, want);
+        let Some(to) = self.writable(&place) else {
+            return;
+        };
+        if value.is_error() {
+            return;
+        }
+        let simple = value.ty == TypeId::NULL
+            || self.an.types.strip(value.ty) == self.an.types.strip(place.ty);
+        let (into, from) = (self.attempted(place.ty), self.attempted(value.ty));
+        match (into, from) {
+            (Some(into), Some(from)) if !self.an.conforms(from, into) => {
+                self.checked_attempt(&to, into, from, &value, range);
+            }
+            (Some(_), Some(_)) => {
+                // Both are one address, and it always fits.
+                let value = self.raw(&value);
+                let path = self.path_of(&to, range);
+                self.before(StmtKind::Assign(path, value), range);
+            }
+            _ if simple && matches!(self.an.types.base(place.ty), TypeKind::Reference(..)) => {
+                self.store(&to, place.ty, &value, range);
+            }
+            (Some(_), None) if simple => self.store(&to, place.ty, &value, range),
+            _ => {
+                let message = format!(
+                    "?= is between interfaces and references to instances, not from {} to {}",
+                    self.type_name(value.ty),
+                    self.type_name(place.ty)
+                );
+                self.error(Message::E2035, range, message);
+            }
+        }
+    }
+
+    /// Keeps the address if the type of the instance fits, else NULL.
+    fn checked_attempt(
+        &mut self,
+        to: &Place,
+        into: PouId,
+        from: PouId,
+        value: &Operand,
+        range: TextRange,
+    ) {
+        let fitting: Vec<PouId> = self.an.concrete_types(into);
+        let fitting: Vec<PouId> = fitting
+            .into_iter()
+            .filter(|ty| self.an.conforms(*ty, from))
+            .collect();
+        if fitting.is_empty() || !self.may_be_numbered(from) {
+            let message = format!(
+                "nothing is both a {} and a {}, so this always gives NULL",
+                self.text(self.an.pou(from).name),
+                self.text(self.an.pou(into).name)
+            );
+            self.error(Message::E2036, range, message);
+            return;
+        }
+        let mut numbers: Vec<u32> = fitting.iter().map(|ty| self.an.type_number(*ty)).collect();
+        numbers.sort_unstable();
+        let ty = self.an.types.strip(value.ty);
+        let held = self.temporary("attempt", ty);
+        let address = self.raw(value);
+        let path = self.path_of(&held, range);
+        self.before(StmtKind::Assign(path, address), range);
+        let keep = self.store_held(to, Some(&held), range);
+        let drop = self.store_held(to, None, range);
+        let selector = self.number_of(&held, range);
+        let ranges = numbers.iter().map(|n| (u64::from(*n), u64::from(*n)));
+        let kind = StmtKind::Case {
+            selector,
+            arms: vec![(ranges.collect(), vec![keep])],
+            otherwise: vec![drop],
+        };
+        self.before(kind, range);
+    }
+
+    fn may_be_numbered(&self, pou: PouId) -> bool {
+        !self.an.pou(pou).has_instances() || self.an.is_numbered(pou)
+    }
+
+    fn store_held(
+        &mut self,
+        to: &Place,
+        held: Option<&Place>,
+        range: TextRange,
+    ) -> crate::hir::code::StmtId {
+        let value = match held {
+            Some(held) => self.load_held(held, range),
+            None => self.add_const(0, Elementary::Ulint, range),
+        };
+        let path = self.path_of(to, range);
+        self.add_stmt(StmtKind::Assign(path, value), range)
+    }
+
+    fn load_held(&mut self, held: &Place, range: TextRange) -> ExprId {
+        let path = self.path_of(held, range);
+        self.add_expr(ExprKind::Load(path), Elementary::Ulint, range)
+    }
+
+    /// The type number of the instance at an address, 0 for NULL.
+    fn number_of(&mut self, held: &Place, range: TextRange) -> ExprId {
+        let (value, address) = (self.load_held(held, range), self.load_held(held, range));
+        let none = self.add_const(0, Elementary::Ulint, range);
+        let compare = ExprKind::Compare(hir::CompareOp::NotEqual, value, none);
+        let there = self.add_expr(compare, Elementary::Bool, range);
+        let root = Root::Deref {
+            address,
+            ty: Type::Elementary(Elementary::Udint),
+            checked: true,
+        };
+        let path = self.add_path(root, Vec::new(), range);
+        let number = self.add_expr(ExprKind::Load(path), Elementary::Udint, range);
+        let zero = self.add_const(0, Elementary::Udint, range);
+        let kind = ExprKind::Choose(there, number, zero);
+        self.add_expr(kind, Elementary::Udint, range)
+    }
+
+    /// Copies an instance, but never what says of which type it is.
+    pub(super) fn copy_instance(&mut self, pou: PouId, to: &Place, from: &Place, range: TextRange) {
+        if !self.an.is_numbered(pou) {
+            let (to, from) = (self.path_of(to, range), self.path_of(from, range));
+            self.before(StmtKind::Copy(to, from), range);
+            return;
+        }
+        for (position, part) in (0..).zip(self.an.instance_parts(pou)) {
+            let step = |place: &Place| {
+                let mut place = place.clone();
+                place.steps.push(PathStep::Field(position));
+                place
+            };
+            let (to, from) = (step(to), step(from));
+            match part {
+                InstancePart::TypeNumber => {}
+                InstancePart::Base(base) => self.copy_instance(base, &to, &from, range),
+                InstancePart::Var(index) => {
+                    let ty = self.an.pou(pou).vars[index].ty;
+                    self.copy_field(ty, &to, &from, range);
+                }
+                InstancePart::Edge(_) => self.copy_field(TypeId::BOOL, &to, &from, range),
+            }
+        }
+    }
+
+    fn copy_field(&mut self, ty: TypeId, to: &Place, from: &Place, range: TextRange) {
+        let (to, from) = (self.path_of(to, range), self.path_of(from, range));
+        let kind = if self.an.types.is_scalar(ty) {
+            let scalar = self.an.scalar(ty);
+            StmtKind::Assign(to, self.add_expr(ExprKind::Load(from), scalar, range))
+        } else {
+            StmtKind::Copy(to, from)
+        };
+        self.before(kind, range);
+    }
+}
