@@ -99,10 +99,9 @@ impl Analysis<'_> {
     /// Only inputs, outputs and public variables may get other initial values.
     fn may_initialise(&mut self, scope: TypeScope<'_>, of: PouId, index: usize, name: st::Ident) {
         let var = &self.pou(of).vars[index];
-        let open = match var.section {
-            SectionKind::Input | SectionKind::Output => true,
-            _ => self.options.codesys || var.access == Some(ModifierKind::Public),
-        };
+        let open = matches!(var.section, SectionKind::Input | SectionKind::Output)
+            || self.options.codesys
+            || var.access == Some(ModifierKind::Public);
         if open {
             return;
         }

@@ -107,9 +107,9 @@ impl Analysis<'_> {
             if let Some(defs) = here.defs.get(&name) {
                 return Seen::Defs(defs);
             }
-            match self.seen_by_using(from, id, name) {
-                Seen::Nothing => {}
-                other => return other,
+            let used = self.seen_by_using(from, id, name);
+            if !matches!(used, Seen::Nothing) {
+                return used;
             }
             at = here.parent;
         }
@@ -199,13 +199,15 @@ impl Analysis<'_> {
         path: st::Id<st::Expr>,
     ) -> Option<Vec<Def>> {
         let written = self.unit(unit).arena[path];
-        match written.kind {
-            ExprKind::Name(name) => self.found_name(unit, from, name, written.range),
-            ExprKind::Member { base, member } => match self.found(unit, from, base)?[..] {
-                [Def::Namespace(inner), ..] => self.found_in(unit, from, inner, member),
-                _ => Some(Vec::new()),
-            },
-            _ => Some(Vec::new()),
+        if let ExprKind::Name(name) = written.kind {
+            return self.found_name(unit, from, name, written.range);
+        }
+        let ExprKind::Member { base, member } = written.kind else {
+            return Some(Vec::new());
+        };
+        match self.found(unit, from, base)?[..] {
+            [Def::Namespace(inner), ..] => self.found_in(unit, from, inner, member),
+            [] | [Def::Type(_) | Def::Pou(_) | Def::Global(_), ..] => Some(Vec::new()),
         }
     }
 

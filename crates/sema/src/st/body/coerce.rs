@@ -110,7 +110,7 @@ impl Body<'_, '_> {
                 };
                 Some(self.add_expr(kind, base.storage(), operand.range))
             }
-            (_, TypeKind::Interface(interface)) => self.to_interface(operand, interface),
+            (_, TypeKind::Interface(interface)) => self.interface_value(operand, interface),
             (TypeKind::Reference(_, a), TypeKind::Reference(_, b)) if self.refers_alike(a, b) => {
                 Some(self.raw(operand))
             }

@@ -17,6 +17,7 @@ mod object;
 mod operand;
 mod operator;
 mod place;
+mod reference;
 mod stmt;
 
 pub(crate) use operand::{Operand, OperandKind, Place, Rights};

@@ -4,10 +4,9 @@ use super::call::Callee;
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{Call, ExprId, ExprKind, PathStep, Root, StmtKind};
 use crate::hir::{self, Elementary, Type};
-use crate::st::instance::InstancePart;
 use crate::st::signature::{Part, PouId, Storage, Var};
 use crate::st::signatures::CallShape;
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::TypeKind;
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ExprKind as Written, ModifierKind, PouKind, SectionKind};
 use iecc_diag::{Code as Message, Diagnostic};
@@ -103,7 +102,7 @@ impl Body<'_, '_> {
     }
 
     /// The class or block that the body belongs to.
-    fn home(&self) -> Option<PouId> {
+    pub(super) fn home(&self) -> Option<PouId> {
         let pou = self.pou?;
         let home = self.an.pou(pou).owner.unwrap_or(pou);
         self.an.pou(home).has_instances().then_some(home)
@@ -198,11 +197,19 @@ impl Body<'_, '_> {
     }
 
     fn variable_access(&self, var: &Var) -> Access {
-        match var.section {
-            SectionKind::Input | SectionKind::Output | SectionKind::InOut => Access::Public,
-            _ if self.an.options.codesys => Access::of(var.access).unwrap_or(Access::Public),
-            _ => Access::of(var.access).unwrap_or(Access::Protected),
+        let passed = matches!(
+            var.section,
+            SectionKind::Input | SectionKind::Output | SectionKind::InOut
+        );
+        let default = if passed || self.an.options.codesys {
+            Access::Public
+        } else {
+            Access::Protected
+        };
+        if passed {
+            return default;
         }
+        Access::of(var.access).unwrap_or(default)
     }
 
     fn check_variable(&mut self, var: &Var, of: PouId, range: TextRange) -> bool {
@@ -273,9 +280,9 @@ impl Body<'_, '_> {
 
     /// `operand.name`, if that is a method.
     pub(super) fn method_callee(&mut self, operand: &Operand, name: st::Ident) -> Option<Callee> {
-        let of = match *self.an.types.base(operand.ty) {
-            TypeKind::Instance(of) | TypeKind::Interface(of) => of,
-            _ => return None,
+        let (TypeKind::Instance(of) | TypeKind::Interface(of)) = *self.an.types.base(operand.ty)
+        else {
+            return None;
         };
         let Some(signature) = self.an.method(of, name.name) else {
             if self.an.pou(of).has_instances() {
@@ -288,6 +295,11 @@ impl Body<'_, '_> {
             return Some(Callee::Mistake);
         }
         let run = match (&operand.kind, self.an.pou(of).has_instances()) {
+            (OperandKind::Place(place), true) if self.is_this(place, of) => {
+                let own = self.pou.map_or(of, |pou| self.an.instance_of(pou));
+                let this = self.this_as(own);
+                self.run(own, &this, Some(name.name), signature, operand.range)
+            }
             (OperandKind::Place(place), true) => {
                 let place = place.clone();
                 self.run(of, &place, Some(name.name), signature, operand.range)
@@ -295,6 +307,13 @@ impl Body<'_, '_> {
             _ => self.run_through(of, operand, name.name, signature),
         };
         Some(Callee::Method(Target { signature, run }))
+    }
+
+    /// Whether a place is the whole instance that the body works on.
+    fn is_this(&self, place: &Place, ty: PouId) -> bool {
+        self.home() == Some(ty)
+            && place.root == Root::Ref(0)
+            && place.steps == self.this_as(ty).steps
     }
 
     fn no_method(&mut self, of: PouId, name: st::Ident) {
@@ -467,258 +486,12 @@ impl Body<'_, '_> {
 
     /// `THIS^` and `SUPER^` of CODESYS, where they are pointers, as `THIS` and `SUPER`.
     pub(super) fn pointed_self(&self, id: st::Id<st::Expr>) -> st::Id<st::Expr> {
-        match self.arena()[id].kind {
-            Written::Deref(base)
-                if self.an.options.codesys
-                    && matches!(self.arena()[base].kind, Written::This | Written::Super) =>
-            {
-                base
-            }
-            _ => id,
+        if let Written::Deref(base) = self.arena()[id].kind
+            && self.an.options.codesys
+            && matches!(self.arena()[base].kind, Written::This | Written::Super)
+        {
+            return base;
         }
-    }
-
-    // What becomes of references and instances.
-
-    /// Why nothing may refer to a place, if so.
-    pub(super) fn no_reference(&self, place: &Place) -> Option<&'static str> {
-        if matches!(place.steps.last(), Some(PathStep::Bits { .. })) {
-            return Some("part of a bit string has no reference");
-        }
-        if place.rights == Rights::Constant {
-            return Some("a constant has no reference");
-        }
-        let temporary = match place.root {
-            Root::Local(_) => true,
-            Root::Ref(reference) => self.is_passed_copy(reference),
-            Root::Tag(_) | Root::Deref { .. } => false,
-        };
-        temporary.then_some("this variable is gone when the call ends, so nothing can refer to it")
-    }
-
-    /// Whether a reference parameter stands for a copy: an input, an output, the result.
-    fn is_passed_copy(&self, reference: u32) -> bool {
-        if self.home().is_some() && reference == 0 {
-            return false;
-        }
-        let Some(pou) = self.pou else { return false };
-        let mut vars = self.an.pou(pou).vars.iter();
-        let var = vars.find(|var| var.storage == Storage::Ref(reference));
-        var.is_none_or(|var| var.section != SectionKind::InOut)
-    }
-
-    /// The place of an instance as one of a type that it extends.
-    pub(super) fn as_base(&self, place: &Place, from: TypeId, to: TypeId) -> Option<Place> {
-        let types = &self.an.types;
-        let (TypeKind::Instance(from), TypeKind::Instance(to)) = (types.base(from), types.base(to))
-        else {
-            return None;
-        };
-        let distance = self.an.base_distance(*from, *to)?;
-        let mut place = place.clone();
-        let steps = std::iter::repeat_n(PathStep::Field(0), distance);
-        place.steps.extend(steps);
-        Some(place)
-    }
-
-    /// Whether what a reference to one type stands for may be looked at as the other.
-    pub(super) fn refers_alike(&self, from: TypeId, to: TypeId) -> bool {
-        let types = &self.an.types;
-        match (types.base(from), types.base(to)) {
-            (TypeKind::Instance(from), TypeKind::Instance(to)) => self.an.conforms(*from, *to),
-            _ => types.strip(from) == types.strip(to),
-        }
-    }
-
-    /// An instance or interface as an interface.
-    pub(super) fn to_interface(&mut self, operand: &Operand, interface: PouId) -> Option<ExprId> {
-        match (self.an.types.base(operand.ty).clone(), &operand.kind) {
-            (TypeKind::Interface(from), _) if self.an.conforms(from, interface) => {
-                Some(self.raw(operand))
-            }
-            (TypeKind::Instance(from), OperandKind::Place(place))
-                if self.an.conforms(from, interface) =>
-            {
-                let path = self.path_of(&place.clone(), operand.range);
-                Some(self.add_expr(ExprKind::Address(path), Elementary::Ulint, operand.range))
-            }
-            _ => None,
-        }
-    }
-
-    /// What an attempt may turn into something else: an interface, or a reference to an instance.
-    fn attempted(&self, ty: TypeId) -> Option<PouId> {
-        match *self.an.types.base(ty) {
-            TypeKind::Interface(pou) => Some(pou),
-            TypeKind::Reference(_, target) => match *self.an.types.base(target) {
-                TypeKind::Instance(pou) => Some(pou),
-                _ => None,
-            },
-            _ => None,
-        }
-    }
-
-    /// `target ?= value`.
-    pub(super) fn attempt(
-        &mut self,
-        target: st::Id<st::Expr>,
-        value: st::Id<st::Expr>,
-        range: TextRange,
-    ) {
-        let place = self.place(target, None);
-        let want = (!place.is_error()).then_some(place.ty);
-        let value = self.expr(value, want);
-        let Some(to) = self.writable(&place) else {
-            return;
-        };
-        if value.is_error() {
-            return;
-        }
-        let simple = value.ty == TypeId::NULL
-            || self.an.types.strip(value.ty) == self.an.types.strip(place.ty);
-        let (into, from) = (self.attempted(place.ty), self.attempted(value.ty));
-        match (into, from) {
-            (Some(into), Some(from)) if !self.an.conforms(from, into) => {
-                self.checked_attempt(&to, into, from, &value, range);
-            }
-            (Some(_), Some(_)) => {
-                // Both are one address, and it always fits.
-                let value = self.raw(&value);
-                let path = self.path_of(&to, range);
-                self.before(StmtKind::Assign(path, value), range);
-            }
-            _ if simple && matches!(self.an.types.base(place.ty), TypeKind::Reference(..)) => {
-                self.store(&to, place.ty, &value, range);
-            }
-            (Some(_), None) if simple => self.store(&to, place.ty, &value, range),
-            _ => {
-                let message = format!(
-                    "?= is between interfaces and references to instances, not from {} to {}",
-                    self.type_name(value.ty),
-                    self.type_name(place.ty)
-                );
-                self.error(Message::E2035, range, message);
-            }
-        }
-    }
-
-    /// Keeps the address if the type of the instance fits, else NULL.
-    fn checked_attempt(
-        &mut self,
-        to: &Place,
-        into: PouId,
-        from: PouId,
-        value: &Operand,
-        range: TextRange,
-    ) {
-        let fitting: Vec<PouId> = self.an.concrete_types(into);
-        let fitting: Vec<PouId> = fitting
-            .into_iter()
-            .filter(|ty| self.an.conforms(*ty, from))
-            .collect();
-        if fitting.is_empty() || !self.may_be_numbered(from) {
-            let message = format!(
-                "nothing is both a {} and a {}, so this always gives NULL",
-                self.text(self.an.pou(from).name),
-                self.text(self.an.pou(into).name)
-            );
-            self.error(Message::E2036, range, message);
-            return;
-        }
-        let mut numbers: Vec<u32> = fitting.iter().map(|ty| self.an.type_number(*ty)).collect();
-        numbers.sort_unstable();
-        let ty = self.an.types.strip(value.ty);
-        let held = self.temporary("attempt", ty);
-        let address = self.raw(value);
-        let path = self.path_of(&held, range);
-        self.before(StmtKind::Assign(path, address), range);
-        let keep = self.store_held(to, Some(&held), range);
-        let drop = self.store_held(to, None, range);
-        let selector = self.number_of(&held, range);
-        let ranges = numbers.iter().map(|n| (u64::from(*n), u64::from(*n)));
-        let kind = StmtKind::Case {
-            selector,
-            arms: vec![(ranges.collect(), vec![keep])],
-            otherwise: vec![drop],
-        };
-        self.before(kind, range);
-    }
-
-    fn may_be_numbered(&self, pou: PouId) -> bool {
-        !self.an.pou(pou).has_instances() || self.an.is_numbered(pou)
-    }
-
-    fn store_held(
-        &mut self,
-        to: &Place,
-        held: Option<&Place>,
-        range: TextRange,
-    ) -> crate::hir::code::StmtId {
-        let value = match held {
-            Some(held) => self.load_held(held, range),
-            None => self.add_const(0, Elementary::Ulint, range),
-        };
-        let path = self.path_of(to, range);
-        self.add_stmt(StmtKind::Assign(path, value), range)
-    }
-
-    fn load_held(&mut self, held: &Place, range: TextRange) -> ExprId {
-        let path = self.path_of(held, range);
-        self.add_expr(ExprKind::Load(path), Elementary::Ulint, range)
-    }
-
-    /// The type number of the instance at an address, 0 for NULL.
-    fn number_of(&mut self, held: &Place, range: TextRange) -> ExprId {
-        let (value, address) = (self.load_held(held, range), self.load_held(held, range));
-        let none = self.add_const(0, Elementary::Ulint, range);
-        let compare = ExprKind::Compare(hir::CompareOp::NotEqual, value, none);
-        let there = self.add_expr(compare, Elementary::Bool, range);
-        let root = Root::Deref {
-            address,
-            ty: Type::Elementary(Elementary::Udint),
-            checked: true,
-        };
-        let path = self.add_path(root, Vec::new(), range);
-        let number = self.add_expr(ExprKind::Load(path), Elementary::Udint, range);
-        let zero = self.add_const(0, Elementary::Udint, range);
-        let kind = ExprKind::Choose(there, number, zero);
-        self.add_expr(kind, Elementary::Udint, range)
-    }
-
-    /// Copies an instance, but never what says of which type it is.
-    pub(super) fn copy_instance(&mut self, pou: PouId, to: &Place, from: &Place, range: TextRange) {
-        if !self.an.is_numbered(pou) {
-            let (to, from) = (self.path_of(to, range), self.path_of(from, range));
-            self.before(StmtKind::Copy(to, from), range);
-            return;
-        }
-        for (position, part) in (0..).zip(self.an.instance_parts(pou)) {
-            let step = |place: &Place| {
-                let mut place = place.clone();
-                place.steps.push(PathStep::Field(position));
-                place
-            };
-            let (to, from) = (step(to), step(from));
-            match part {
-                InstancePart::TypeNumber => {}
-                InstancePart::Base(base) => self.copy_instance(base, &to, &from, range),
-                InstancePart::Var(index) => {
-                    let ty = self.an.pou(pou).vars[index].ty;
-                    self.copy_field(ty, &to, &from, range);
-                }
-                InstancePart::Edge(_) => self.copy_field(TypeId::BOOL, &to, &from, range),
-            }
-        }
-    }
-
-    fn copy_field(&mut self, ty: TypeId, to: &Place, from: &Place, range: TextRange) {
-        let (to, from) = (self.path_of(to, range), self.path_of(from, range));
-        let kind = if self.an.types.is_scalar(ty) {
-            let scalar = self.an.scalar(ty);
-            StmtKind::Assign(to, self.add_expr(ExprKind::Load(from), scalar, range))
-        } else {
-            StmtKind::Copy(to, from)
-        };
-        self.before(kind, range);
+        id
     }
 }

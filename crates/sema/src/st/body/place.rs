@@ -359,6 +359,9 @@ impl Body<'_, '_> {
             .copied()?;
         match def {
             Def::Namespace(namespace) => {
+                if self.an.found(self.unit, self.namespace, base).is_none() {
+                    return Some(Operand::error(range));
+                }
                 let Some(inner) = self
                     .an
                     .found_in(self.unit, self.namespace, namespace, member)
