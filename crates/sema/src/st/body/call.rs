@@ -292,6 +292,8 @@ impl Body<'_, '_> {
             && let Some(&[Def::Namespace(namespace), ..]) =
                 self.an.path(self.unit, self.namespace, base)
         {
+            // What is INTERNAL on the way is reported there.
+            self.an.found(self.unit, self.namespace, base)?;
             let defs = self
                 .an
                 .found_in(self.unit, self.namespace, namespace, member)?;
