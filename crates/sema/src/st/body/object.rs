@@ -172,7 +172,9 @@ impl Body<'_, '_> {
             return self.no_instance_member(pou, member);
         };
         let var = self.an.pou(of).vars[index].clone();
-        if !self.check_variable(&var, of, member.range) {
+        // What does not last is told apart from what is hidden.
+        let lasting = !matches!(var.storage, Storage::Local | Storage::Ref(_));
+        if lasting && !self.check_variable(&var, of, member.range) {
             return Operand::error(range);
         }
         let own = self.begins_with_this(place)

@@ -178,6 +178,8 @@ impl Body<'_, '_> {
                 let place = place.clone();
                 self.located_place(&place, var.ty, own_rights(var), range)
             }
+            // What is wrong with its declaration was reported there.
+            Storage::Local | Storage::Ref(_) if var.ty == TypeId::ERROR => Operand::error(range),
             Storage::Local | Storage::Ref(_) => {
                 let message = format!("`{}` exists only while the block runs", self.text(var.name));
                 self.error(Message::E1013, range, message)
