@@ -62,8 +62,14 @@ fn indexes(program: &Program, place: Place, text: &str) -> Option<Place> {
 fn member(program: &Program, place: Place, name: &str) -> Option<Place> {
     match program.type_of(&place) {
         Type::Struct(id) => {
-            let index = program.types.struct_def(id).member(name)?;
-            Some(place.step(Step::Field(index)))
+            let def = program.types.struct_def(id);
+            if let Some(index) = def.member(name) {
+                return Some(place.step(Step::Field(index)));
+            }
+            // What is inherited lies in the part that is the base; chains of these are short.
+            let base = def.members.first().filter(|first| first.hidden)?;
+            let inherits = base.name == "__base";
+            inherits.then(|| member(program, place.step(Step::Field(0)), name))?
         }
         Type::Elementary(ty) => {
             let bit: u32 = name.parse().ok()?;
