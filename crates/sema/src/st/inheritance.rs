@@ -54,10 +54,23 @@ impl Analysis<'_> {
             self.check_no_body(id);
         }
         self.check_variables(id);
+        self.check_properties(id);
         for (name, method) in self.pou(id).members.clone() {
             self.check_method_of(id, name, method);
         }
         self.check_all_there(id);
+    }
+
+    fn check_properties(&mut self, id: PouId) {
+        let unit = self.pou(id).unit;
+        let UnitKind::Pou(written) = &self.unit(unit).kind else {
+            return;
+        };
+        for member in &self.unit(unit).arena[written.members] {
+            if let Member::Property(property) = member {
+                self.unsupported(unit, property.name.range, "PROPERTY");
+            }
+        }
     }
 
     fn contradiction(&mut self, id: PouId) {
@@ -378,6 +391,7 @@ impl Analysis<'_> {
                 self.error(Code::E1048, span, message);
             }
         }
+        self.check_properties(id);
         for (name, method) in self.pou(id).members.clone() {
             self.check_twice(id, name, method);
             self.check_no_statements(method);

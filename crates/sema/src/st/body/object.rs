@@ -340,6 +340,9 @@ impl Body<'_, '_> {
         signature: PouId,
         range: TextRange,
     ) -> Run {
+        if self.may_be_derived(place) && method.is_none() {
+            self.check_in_outs_of_heirs(of, range);
+        }
         if self.may_be_derived(place)
             && let Some(dispatcher) = self.an.dispatcher(of, method, signature)
         {
@@ -352,6 +355,24 @@ impl Body<'_, '_> {
         }
         let body = self.an.body_of(of, method).unwrap_or(signature);
         self.run_on(body, of, place.clone())
+    }
+
+    /// A block that is called as its base gets no more in-outs than the base has.
+    fn check_in_outs_of_heirs(&mut self, of: PouId, range: TextRange) {
+        let known = self.an.pou(of).section(SectionKind::InOut).count();
+        for heir in self.an.concrete_types(of) {
+            self.an.complete(heir);
+            let pou = self.an.pou(heir);
+            let Some(more) = pou.section(SectionKind::InOut).nth(known) else {
+                continue;
+            };
+            let (name, more) = (self.text(pou.name), self.text(more.name));
+            let message = format!(
+                "this may be a `{name}`, whose in-out `{more}` this call has no argument for"
+            );
+            self.error(Message::E3016, range, message);
+            return;
+        }
     }
 
     fn run_on(&mut self, body: PouId, of: PouId, mut instance: Place) -> Run {
