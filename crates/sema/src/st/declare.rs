@@ -126,6 +126,7 @@ impl<'a> Analysis<'a> {
             receiver: None,
             modifiers: unit.arena[pou.modifiers].iter().map(|m| m.kind).collect(),
             bindings: Bindings::default(),
+            template: None,
             state: State::Declared,
         });
         self.define(namespace, pou.name.name, Def::Pou(whole), span);

@@ -114,6 +114,8 @@ pub struct Pou {
     pub modifiers: Vec<st::ModifierKind>,
     /// Generic types of a library unit have a value here in the instance made for a call.
     pub bindings: Bindings,
+    /// The unit this one was made of for a call, if it was.
+    pub template: Option<PouId>,
     /// Whether its signature is complete.
     pub state: State,
 }

@@ -150,6 +150,8 @@ impl Analysis<'_> {
 
     /// The structure of an instance: what it extends, then its own members.
     pub(crate) fn instance_struct(&mut self, pou: PouId) -> StructId {
+        // All bodies of a block run on the same storage.
+        let pou = self.pou(pou).template.unwrap_or(pou);
         if let Some(&known) = self.storage.instances.get(&pou) {
             return known;
         }

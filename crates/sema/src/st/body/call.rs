@@ -373,6 +373,9 @@ impl Body<'_, '_> {
         range: TextRange,
     ) {
         self.an.complete(pou);
+        let Some(pou) = self.open_instance(pou, arguments, range) else {
+            return;
+        };
         let matched = self.matched(pou, arguments, range);
         let mut refs: Vec<Option<PathId>> = Vec::new();
         let shape = self.an.call_shape(pou);

@@ -631,6 +631,7 @@ impl crate::st::analysis::Analysis<'_> {
         }
         let mut pou = self.pou(function).clone();
         pou.bindings = key.1.clone();
+        pou.template = Some(function);
         pou.state = crate::st::signature::State::Declared;
         pou.vars.clear();
         pou.by_name.clear();
