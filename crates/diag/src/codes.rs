@@ -175,6 +175,15 @@ codes! {
     E3019 Error "argument is given twice";
     E3020 Error "argument has the wrong direction";
     E3021 Error "function does not take these arguments";
+    E3040 Error "recursion";
+    E3041 Error "loop never ends";
+    E3050 Warning "variable is not used";
+    E3051 Warning "statement is never reached";
+    E3052 Warning "function does not give its result";
+    E3053 Warning "CASE leaves out values of an enumeration";
+    E3054 Warning "reals are compared for equality";
+    E3055 Warning "instance is never called";
+    E3056 Warning "variable is read before it is assigned";
     // 5 ladder and L5X
     E5001 Error "XML is malformed";
     E5002 Error "file is not an L5X export";

@@ -95,6 +95,8 @@ pub(crate) struct Analysis<'a> {
     pub unit_names: FxHashMap<String, u32>,
     pub hir_ids: FxHashMap<PouId, hir::PouId>,
     pub found: Diagnostics,
+    /// What is given only where there are no errors.
+    pub warnings: Vec<Diagnostic>,
     /// How deep declarations are being resolved.
     pub depth: u32,
     /// The first unit that is not of the library.

@@ -28,6 +28,7 @@ mod heritage;
 mod inheritance;
 mod initial;
 mod instance;
+mod lint;
 mod namespaces;
 mod program;
 mod resolve;
@@ -150,6 +151,7 @@ impl<'a> Analysis<'a> {
             unit_names: FxHashMap::default(),
             hir_ids: FxHashMap::default(),
             found: Diagnostics::new(),
+            warnings: Vec::new(),
             depth: 0,
             first_user_unit: 0,
         }
@@ -179,6 +181,12 @@ impl<'a> Analysis<'a> {
         for &id in &user {
             self.check_inheritance(id);
             let home = self.pou(id).owner.unwrap_or(id);
+            if self.pou(id).has_instances() {
+                // Initial values are checked even where nobody makes an instance.
+                let ty = self.types.intern(TypeKind::Instance(id));
+                self.storage(ty);
+                self.default_init(ty);
+            }
             // With open arrays there is a body for every call.
             if self.pou(home).kind != PouKind::Interface && !self.has_open_arrays(id) {
                 self.want(id);
@@ -202,6 +210,7 @@ impl<'a> Analysis<'a> {
             self.hir.pous.push(made);
             next += 1;
         }
+        self.lint();
         (self.hir, self.found)
     }
 

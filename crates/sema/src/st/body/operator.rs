@@ -224,7 +224,11 @@ impl Body<'_, '_> {
             }
         };
         let (left_hint, right_hint) = (hint(&right), hint(&left));
+        let alike = left.ty == right.ty;
         let left = self.bit_operand(left, left_hint, op.as_str());
+        if left.is_error() && alike {
+            return Operand::error(range);
+        }
         let right = self.bit_operand(right, right_hint, op.as_str());
         if left.is_error() || right.is_error() {
             return Operand::error(range);
@@ -460,6 +464,9 @@ impl Body<'_, '_> {
             return self.compare_texts(hir_op, left, right, range);
         }
         let (left, right) = (self.as_scalar(&left, ty), self.as_scalar(&right, ty));
+        if self.an.types.elementary(ty).is_some_and(El::is_real) {
+            self.real_equality(hir_op, left, right, range);
+        }
         let value = self.add_expr(
             ExprKind::Compare(hir_op, left, right),
             crate::hir::Elementary::Bool,

@@ -462,8 +462,12 @@ impl Body<'_, '_> {
         range: TextRange,
     ) -> Operand {
         let mut at = self.place(base, None);
-        if let TypeKind::Array { dimensions, .. } = self.an.types.base(at.ty)
-            && indices.len() < dimensions.len()
+        if let TypeKind::Array {
+            dimensions,
+            element,
+        } = self.an.types.base(at.ty)
+            && (indices.len() < dimensions.len()
+                || indices.len() > dimensions.len() && self.an.types.is_scalar(*element))
         {
             let (needed, given) = (dimensions.len(), indices.len());
             let message =

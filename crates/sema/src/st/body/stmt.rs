@@ -1,12 +1,13 @@
 //! Statements.
 
 use super::{Body, Operand, OperandKind, Place, Rights};
-use crate::hir::code::{Block, ExprId, Root, StmtKind};
+use crate::hir::code::{Block, ExprId, ExprKind, Root, StmtKind};
 use crate::st::constant::Const;
 use crate::st::elementary::El;
-use crate::st::signature::{Part, PouId, Storage};
+use crate::st::lint::can_leave;
+use crate::st::signature::{PouId, Storage};
 use crate::st::types::{TypeId, TypeKind};
-use iecc_ast::st::{self, AssignOp, Member, SectionKind, StmtKind as Written, UnitKind};
+use iecc_ast::st::{self, AssignOp, SectionKind, StmtKind as Written};
 use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::TextRange;
 
@@ -21,34 +22,10 @@ impl Body<'_, '_> {
             let value = self.add_const(1, crate::hir::Elementary::Bool, range);
             body.push(self.add_stmt(StmtKind::Assign(path, value), range));
         }
-        if let Some(written) = self.written_body(id) {
+        if let Some(written) = self.an.written_body(id) {
             body.extend(self.block(written));
         }
         self.code.body = body;
-    }
-
-    fn written_body(&self, id: PouId) -> Option<st::Block> {
-        let pou = self.an.pou(id);
-        let unit = self.an.unit(pou.unit);
-        let UnitKind::Pou(whole) = &unit.kind else {
-            return None;
-        };
-        let member = |index: u32| &unit.arena[whole.members][index as usize];
-        match pou.part {
-            Part::Whole => Some(whole.body),
-            Part::Member(index) => match member(index) {
-                Member::Method(method) => Some(method.body),
-                Member::Action(action) => Some(action.body),
-                Member::Property(_) => None,
-            },
-            Part::Getter(index) | Part::Setter(index) => match member(index) {
-                Member::Property(property) => match pou.part {
-                    Part::Getter(_) => property.get.map(|accessor| accessor.body),
-                    _ => property.set.map(|accessor| accessor.body),
-                },
-                Member::Method(_) | Member::Action(_) => None,
-            },
-        }
     }
 
     /// Variables that are made anew by every call get their initial values, the result included.
@@ -146,18 +123,20 @@ impl Body<'_, '_> {
                 body,
             } => self.for_loop(variable, from, to, by, body, range),
             Written::While { condition, body } => {
-                let condition = self.loop_condition(condition);
+                let value = self.loop_condition(condition);
+                self.must_end(value, 1, condition, body);
                 self.loops.push(None);
                 let body = self.block(body);
                 self.loops.pop();
-                Some(StmtKind::While(condition, body))
+                Some(StmtKind::While(value, body))
             }
             Written::Repeat { body, until } => {
                 self.loops.push(None);
-                let body = self.block(body);
+                let made = self.block(body);
                 self.loops.pop();
-                let until = self.loop_condition(until);
-                Some(StmtKind::Repeat(body, until))
+                let value = self.loop_condition(until);
+                self.must_end(value, 0, until, body);
+                Some(StmtKind::Repeat(made, value))
             }
             Written::Return => Some(StmtKind::Return),
             Written::Exit => self.in_loop("EXIT", StmtKind::Exit, range),
@@ -187,8 +166,25 @@ impl Body<'_, '_> {
         if inner.is_empty() {
             return value;
         }
-        let kind = crate::hir::code::ExprKind::After(inner, value);
+        let kind = ExprKind::After(inner, value);
         self.add_expr(kind, crate::hir::Elementary::Bool, operand.range)
+    }
+
+    /// A loop whose condition is always the one that repeats needs another way out.
+    fn must_end(
+        &mut self,
+        condition: ExprId,
+        repeats: u64,
+        written: st::Id<st::Expr>,
+        body: st::Block,
+    ) {
+        let arena = self.arena();
+        let constant = self.code.expr(condition).kind == ExprKind::Const(repeats);
+        let broken = arena[written].kind == st::ExprKind::Error;
+        if constant && !broken && !self.an.found.has_errors() && !can_leave(arena, body, false) {
+            let message = "this loop never ends: its condition is constant, and nothing leaves it";
+            self.error(Message::E3041, arena[written].range, message);
+        }
     }
 
     fn if_statement(
@@ -407,11 +403,41 @@ impl Body<'_, '_> {
             }
             made.push((ranges, self.block(arm.body)));
         }
+        if otherwise.is_none() {
+            self.missing_enumerators(ty, &taken, operand.range);
+        }
         Some(StmtKind::Case {
             selector,
             arms: made,
             otherwise: otherwise.map_or_else(Vec::new, |block| self.block(block)),
         })
+    }
+
+    /// Warns of a CASE without ELSE that leaves out values of its enumeration.
+    fn missing_enumerators(
+        &mut self,
+        ty: TypeId,
+        taken: &[(i128, i128, TextRange)],
+        range: TextRange,
+    ) {
+        let TypeKind::Enum(index) = *self.an.types.base(ty) else {
+            return;
+        };
+        let def = &self.an.types.enums[index as usize];
+        let is_taken = |value: i128| {
+            taken
+                .iter()
+                .any(|(low, high, _)| (*low..=*high).contains(&value))
+        };
+        let missing = def.values.iter().filter(|(_, value)| !is_taken(*value));
+        let names: Vec<&str> = missing.map(|(name, _)| self.text(*name)).collect();
+        if def.named_values || names.is_empty() || self.an.is_library(self.unit) {
+            return;
+        }
+        let message = format!("nothing is done for `{}`", names.join("`, `"));
+        let diagnostic = Diagnostic::new(Message::E3053, self.span(range), message)
+            .note("ELSE with `;` says that nothing is meant");
+        self.an.warn(diagnostic);
     }
 
     /// CASE of strings and reals: labels are compared in their order.
@@ -440,7 +466,7 @@ impl Body<'_, '_> {
             let mut value = self.condition(&condition);
             let inner = std::mem::replace(&mut self.pending, outer);
             if !inner.is_empty() {
-                let kind = crate::hir::code::ExprKind::After(inner, value);
+                let kind = ExprKind::After(inner, value);
                 value = self.add_expr(kind, crate::hir::Elementary::Bool, arm.range);
             }
             made.push((value, self.block(arm.body)));
