@@ -28,7 +28,9 @@ fn cases() -> Vec<String> {
 
 fn folder(path: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(path).expect("the suite");
-    entries.map(|entry| entry.expect("readable").path()).collect()
+    entries
+        .map(|entry| entry.expect("readable").path())
+        .collect()
 }
 
 fn survives(text: &str, what: &str) {
@@ -41,7 +43,10 @@ fn survives(text: &str, what: &str) {
         None => {
             let error = diagnostics.iter().any(|d| d.severity == Severity::Error);
             let units = text.contains("PROGRAM") || text.contains("program");
-            assert!(error || !units || !diagnostics.is_empty(), "{what} says nothing:\n{text}");
+            assert!(
+                error || !units || !diagnostics.is_empty(),
+                "{what} says nothing:\n{text}"
+            );
         }
     }
     assert!(start.elapsed() < LONGEST, "{what} takes too long:\n{text}");
@@ -54,7 +59,10 @@ fn damaged_cases_give_messages_not_panics() {
         let mut rng = Rng::new(seed);
         let text = &cases[rng.below(cases.len())];
         survives(&mutate(text, &mut rng), &format!("seed {seed}"));
-        survives(&mutate_values(text, &mut rng), &format!("seed {seed}, values"));
+        survives(
+            &mutate_values(text, &mut rng),
+            &format!("seed {seed}, values"),
+        );
     }
 }
 

@@ -175,10 +175,12 @@ impl Case {
             return error("`about` is missing".to_owned());
         }
         match (&self.trace, self.has_errors()) {
-            (None, false) => return error("neither a trace nor an error is expected".to_owned()),
+            (None, _) if self.messages.is_empty() => {
+                return error("neither a trace nor a message is expected".to_owned());
+            }
             (Some(_), true) => return error("what has errors cannot run".to_owned()),
             (Some(trace), false) => self.check_trace(trace)?,
-            (None, true) => {}
+            (None, _) => {}
         }
         self.check_name()
     }
@@ -296,7 +298,7 @@ mod tests {
         for (keys, words) in [
             (format!("about: x\n{TABLE}"), "`covers` is missing"),
             (format!("covers: ed3:71:8\n{TABLE}"), "`about` is missing"),
-            (HEAD.to_owned(), "neither a trace nor an error"),
+            (HEAD.to_owned(), "neither a trace nor a message"),
             (format!("covers: ed3:71:99\nabout: x\n{TABLE}"), "no row"),
             (
                 format!("covers: ed3:72:4\nabout: x\n{TABLE}"),

@@ -9,16 +9,17 @@ mod recursion;
 
 pub(super) use flow::can_leave;
 
-use super::analysis::Analysis;
+use super::analysis::{Analysis, UnitRef};
 use super::signature::{Part, Pou, PouId, UnitId};
-use iecc_ast::st::{self, ExprKind, Member, ModifierKind, UnitKind};
+use iecc_ast::st::{self, ExprKind, Member, ModifierKind, PouKind, UnitKind};
 use iecc_diag::{Code, Diagnostic};
 
 impl<'a> Analysis<'a> {
     /// Looks at the units of the user.
     pub(crate) fn lint(&mut self) {
         self.recursion();
-        if self.found.has_errors() {
+        let is_broken = |unit: &UnitRef| unit.unit.has_errors;
+        if self.found.has_errors() || self.units.iter().any(is_broken) {
             return;
         }
         let configured = self.names_in_configurations();
@@ -70,6 +71,7 @@ impl<'a> Analysis<'a> {
             return None;
         };
         match pou.part {
+            _ if whole.kind == PouKind::Interface => None,
             Part::Whole => Some(whole.body),
             Part::Member(index) | Part::Getter(index) | Part::Setter(index) => {
                 member_body(&unit.arena[whole.members][index as usize], pou)

@@ -5,7 +5,8 @@ use crate::st::signature::UnitId;
 use crate::st::types::TypeKind;
 use iecc_ast::Symbol;
 use iecc_ast::st::{
-    self, Declarations, ExprKind, Member, Method, PouKind, SectionKind, UnitKind, VarSection,
+    self, Declarations, ExprKind, Member, Method, ModifierKind, PouKind, SectionKind, UnitKind,
+    VarSection,
 };
 use iecc_diag::Code;
 use rustc_hash::FxHashSet;
@@ -139,7 +140,10 @@ impl Analysis<'_> {
             let Declarations::Variables(declarations) = section.declarations else {
                 continue;
             };
-            if !is_own(section.kind) {
+            let open = |modifier: &st::Modifier| {
+                matches!(modifier.kind, ModifierKind::Public | ModifierKind::Internal)
+            };
+            if !is_own(section.kind) || arena[section.modifiers].iter().any(open) {
                 continue;
             }
             for declaration in &arena[declarations] {
