@@ -18,7 +18,7 @@ impl<'a> Analysis<'a> {
     /// Looks at the units of the user.
     pub(crate) fn lint(&mut self) {
         self.recursion();
-        let is_broken = |unit: &UnitRef| unit.unit.has_errors;
+        let is_broken = |unit: &UnitRef<'_>| unit.unit.has_errors;
         if self.found.has_errors() || self.units.iter().any(is_broken) {
             return;
         }
