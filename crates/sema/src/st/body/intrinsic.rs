@@ -26,8 +26,12 @@ impl Body<'_, '_> {
             if binary_is_comparison(op) && operands.len() > 2 {
                 return self.chain(op, operands, range);
             }
+            if operands.len() < 2 {
+                let message = "this function takes at least two arguments";
+                return self.error(Message::E3021, range, message);
+            }
             let mut operands = operands.into_iter();
-            let first = operands.next().expect("intrinsics have arguments");
+            let first = operands.next().expect("at least two");
             return operands.fold(first, |left, right| {
                 self.binary_on(op, left, right, range, want)
             });
