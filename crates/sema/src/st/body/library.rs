@@ -112,6 +112,13 @@ impl Body<'_, '_> {
                 }
             }
         }
+        // Only by name can inputs be left out.
+        let by_position = operands
+            .iter()
+            .all(|(kind, _)| *kind == ArgumentKind::Positional);
+        if by_position && given.outputs.is_empty() && operands.len() < parameters.len() {
+            return None;
+        }
         for parameter in &parameters {
             if let ParameterType::Generic(name, class) = parameter.ty {
                 let ty = generics.iter().find(|(known, _)| *known == name);
