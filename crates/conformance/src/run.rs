@@ -6,7 +6,7 @@ use crate::engines::Family;
 use crate::messages::compare;
 use crate::trace::{Row, Trace};
 use iecc_diag::{Diagnostic, Diagnostics};
-use iecc_driver::run::{Probe, Probes};
+use iecc_driver::run::{Probe, Probes, initial_inputs};
 use iecc_driver::{EngineKind, FrontOptions, Sources, compile};
 use iecc_ir::{FaultCode, Module, Region};
 use iecc_source::SourceMap;
@@ -201,7 +201,7 @@ impl<'c> Plan<'c> {
             Ok(running) => running,
             Err(errors) => return (self.refusal(engine, &errors), Vec::new()),
         };
-        let mut inputs = region_bytes(module, Region::Input);
+        let mut inputs = initial_inputs(module);
         let mut outputs = region_bytes(module, Region::Output);
         let mut given = Vec::with_capacity(self.scans.len());
         for (index, row) in self.trace.rows.iter().enumerate() {

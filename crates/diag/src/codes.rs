@@ -250,6 +250,8 @@ codes! {
     E6040 Error "declarations of a global variable differ";
     E6041 Error "global variable does not exist";
     E6042 Error "task does not exist";
+    E6043 Error "connection of the configuration does not fit";
+    E6044 Error "variable has no address";
     // 7 target cannot express this
     E7001 Error "target cannot express a loop";
     E7002 Error "target cannot express a division";

@@ -11,6 +11,7 @@
 
 mod csv_text;
 mod instrument;
+mod mirror;
 mod names;
 mod probe;
 mod session;
@@ -22,6 +23,7 @@ mod trace;
 mod value;
 
 pub use instrument::{Instruments, Poke, Watch, instrument};
+pub use mirror::initial_inputs;
 pub use probe::{Probe, Probes, Shape};
 pub use session::{Column, Request, RunError, Session};
 pub use stimulus::Stimulus;

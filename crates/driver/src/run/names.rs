@@ -60,6 +60,8 @@ pub(super) struct Names<'m> {
     module: &'m Module,
     /// By lower-case name: the name as spelled in the program, and what it stands for.
     heads: BTreeMap<String, (&'m str, Place)>,
+    /// Inputs and the variables they go to.
+    inputs: Vec<(Place, Place)>,
 }
 
 impl<'m> Names<'m> {
@@ -77,6 +79,7 @@ impl<'m> Names<'m> {
         let mut names = Self {
             module,
             heads: BTreeMap::new(),
+            inputs: super::mirror::mirrored(module),
         };
         for root in order {
             if root == Root::State {
@@ -111,7 +114,7 @@ impl<'m> Names<'m> {
             found.map(|(_, place)| (end, place.clone()))
         });
         match head {
-            Some((end, place)) => self.walk(path, end, place),
+            Some((end, place)) => self.walk(path, end, place).map(|place| self.public(place)),
             None => {
                 let name = &path[..ends[0]];
                 let known = self.heads.values().map(|(name, _)| *name);
@@ -119,6 +122,12 @@ impl<'m> Names<'m> {
                 Err(NameError::unknown(message, name, known))
             }
         }
+    }
+
+    /// Another name of an input is the input.
+    fn public(&self, place: Place) -> Place {
+        let input = self.inputs.iter().find(|(_, state)| *state == place);
+        input.map_or(place, |(input, _)| input.clone())
     }
 
     fn walk(&self, path: &str, mut at: usize, mut place: Place) -> Result<Place, NameError> {

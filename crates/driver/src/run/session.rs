@@ -1,6 +1,7 @@
 //! A run: engine, schedule, stimulus and trace together.
 
 use super::instrument::{Instruments, Poke, Watch, instrument};
+use super::mirror::initial_inputs;
 use super::names::{Names, leaves, view_of};
 use super::stimulus::{BoundRow, BoundStimulus, Setting, Stimulus};
 use super::time::Schedule;
@@ -206,7 +207,7 @@ impl Session {
             columns: columns.collect(),
             settings: settings.collect(),
             rows: bound.rows,
-            inputs: region_bytes(module, Region::Input),
+            inputs: initial_inputs(module),
             outputs: region_bytes(module, Region::Output),
         }
     }

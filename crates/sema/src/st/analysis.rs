@@ -55,6 +55,7 @@ pub(crate) struct Words {
     pub en: Symbol,
     pub eno: Symbol,
     pub interval: Symbol,
+    pub single: Symbol,
     pub priority: Symbol,
 }
 
@@ -77,6 +78,9 @@ pub(crate) struct Analysis<'a> {
     pub pou_of_unit: FxHashMap<UnitId, PouId>,
     pub storage: StorageTypes,
     pub hir: hir::Program,
+    pub addresses: super::address::Addresses,
+    /// The instances of programs, by name.
+    pub program_instances: Vec<(Symbol, PouId, hir::TagId)>,
     /// Instances of library units, by what was bound.
     pub instances: FxHashMap<(PouId, super::signature::Bindings), PouId>,
     /// The bodies that are needed, in the order they came up, and their place in the typed program.

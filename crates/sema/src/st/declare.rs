@@ -92,12 +92,24 @@ impl<'a> Analysis<'a> {
                     }
                 }
             }
-            UnitKind::Pou(pou) => self.declare_pou(id, unit, pou, namespace),
-            UnitKind::Configuration(_)
-            | UnitKind::Globals(_)
-            | UnitKind::Using(_)
-            | UnitKind::Nothing
-            | UnitKind::Error => {}
+            UnitKind::Pou(pou) => {
+                self.declare_pou(id, unit, pou, namespace);
+                for section in &unit.arena[pou.sections] {
+                    self.declare_globals(id, namespace, section);
+                }
+            }
+            UnitKind::Configuration(configuration) => {
+                for section in &unit.arena[configuration.sections] {
+                    self.declare_globals(id, namespace, section);
+                }
+                for resource in &unit.arena[configuration.resources] {
+                    for section in &unit.arena[resource.sections] {
+                        self.declare_globals(id, namespace, section);
+                    }
+                }
+            }
+            UnitKind::Globals(section) => self.declare_globals(id, namespace, section),
+            UnitKind::Using(_) | UnitKind::Nothing | UnitKind::Error => {}
         }
     }
 

@@ -110,6 +110,14 @@ impl Analysis<'_> {
                 },
                 ExprKind::ArrayValue(values),
             ) => self.array_value(scope, values, &dimensions, element, written.range),
+            (TypeKind::Struct(index), ExprKind::StructValue(_))
+                if self.types.structs[index as usize].overlay.is_some() =>
+            {
+                let span = self.span(scope.unit, written.range);
+                let message = "members that overlap have no initial values";
+                self.error(Code::E2008, span, message);
+                None
+            }
             (TypeKind::Struct(index), ExprKind::StructValue(arguments)) => {
                 self.struct_value(scope, arguments, index)
             }

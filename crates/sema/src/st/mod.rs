@@ -18,18 +18,23 @@
     reason = "operands are handed over: what was looked at is used once"
 )]
 
+mod address;
 mod analysis;
 mod body;
+mod config;
 pub mod constant;
 mod declare;
 mod dispatch;
 pub mod elementary;
+mod globals;
 mod heritage;
 mod inheritance;
 mod initial;
 mod instance;
 mod lint;
 mod namespaces;
+mod overlay;
+mod paths;
 mod program;
 mod resolve;
 pub mod signature;
@@ -127,6 +132,7 @@ impl<'a> Analysis<'a> {
                 en: word("EN"),
                 eno: word("ENO"),
                 interval: word("INTERVAL"),
+                single: word("SINGLE"),
                 priority: word("PRIORITY"),
             },
             options,
@@ -141,6 +147,8 @@ impl<'a> Analysis<'a> {
             pou_of_unit: FxHashMap::default(),
             storage: storage::StorageTypes::default(),
             hir: hir::Program::empty(),
+            addresses: address::Addresses::default(),
+            program_instances: Vec::new(),
             instances: FxHashMap::default(),
             wanted: Vec::new(),
             families: heritage::Families::default(),
@@ -170,6 +178,11 @@ impl<'a> Analysis<'a> {
         for index in 0..self.type_decls.len() as u32 {
             self.declared_type(signature::TypeDeclId(index));
         }
+        for index in 0..self.globals.len() as u32 {
+            self.complete_global(signature::GlobalId(index));
+        }
+        self.lay_out_addresses();
+        self.place_globals();
         let units = 0..self.pous.len() as u32;
         let user: Vec<PouId> = units
             .map(PouId)
@@ -178,6 +191,7 @@ impl<'a> Analysis<'a> {
         for &id in &user {
             self.complete(id);
         }
+        self.located_initials();
         for &id in &user {
             self.check_inheritance(id);
             let home = self.pou(id).owner.unwrap_or(id);

@@ -1,14 +1,11 @@
 //! From checked units to a program that can run: instances, tasks, inputs and outputs.
 
 use super::analysis::Analysis;
-use super::body::Rights;
-use super::signature::{PouId, Storage, UnitId, Var};
+use super::signature::{PouId, Storage, UnitId};
 use super::types::{TypeId, TypeKind};
-use crate::hir::code::{
-    Call, Code, Expr, ExprId, ExprKind, Path, PathId, Root, Stmt, StmtId, StmtKind,
-};
-use crate::hir::{self, Body, Elementary, IoPoint, Place, Step, TagId, Task, Trigger, Type};
-use iecc_ast::st::{self, PouKind, SectionKind, UnitKind};
+use crate::hir::code::Code;
+use crate::hir::{self, Body, IoPoint, Place, Step, TagId, Task, Trigger, Type};
+use iecc_ast::st::{PouKind, SectionKind, UnitKind};
 use iecc_diag::{Code as Message, Diagnostic, closest};
 
 impl Analysis<'_> {
@@ -53,8 +50,11 @@ impl Analysis<'_> {
         };
         let name = self.text(self.pou(program).name).to_owned();
         let tag = self.program_instance(program, &name);
-        self.public_points(program, tag);
-        let call = self.program_call(program, tag, &name);
+        self.public_points(program, tag, &[]);
+        self.access_names(program, tag);
+        self.check_places(program, tag, &name, &[]);
+        let connections = super::body::Connections::none(self.pou(program).unit);
+        let call = self.program_call(program, tag, &name, &connections);
         self.hir.name.clone_from(&name);
         self.hir.tasks.push(Task {
             name,
@@ -73,7 +73,10 @@ impl Analysis<'_> {
             (None, [_, second, ..]) => {
                 let message =
                     "there are several programs but no CONFIGURATION that says which runs";
+                let names = programs.iter().map(|id| self.text(self.pou(*id).name));
+                let names = names.collect::<Vec<_>>().join(", ");
                 Diagnostic::new(Message::E6020, self.pou(*second).span, message)
+                    .note(format!("the programs are {names}"))
                     .note("`--entry NAME`, or `entry` in the project file, says it as well")
             }
             (Some(entry), programs) => {
@@ -126,7 +129,12 @@ impl Analysis<'_> {
 
     /// VAR_INPUT and VAR_OUTPUT of the only program are what is exchanged; all its variables can
     /// be named without it.
-    pub(crate) fn public_points(&mut self, program: PouId, tag: TagId) {
+    pub(crate) fn public_points(
+        &mut self,
+        program: PouId,
+        tag: TagId,
+        connected: &[iecc_ast::Symbol],
+    ) {
         for var in self.pou(program).vars.clone() {
             let Storage::Field(field) = var.storage else {
                 continue;
@@ -134,6 +142,9 @@ impl Analysis<'_> {
             let place = Place::whole(tag).step(Step::Field(field));
             let name = self.text(var.name).to_owned();
             match var.section {
+                // What sets it is its source; the name is free for another thing.
+                _ if connected.contains(&var.name) => {}
+                _ if var.partly => self.hir.names.push((name, place)),
                 SectionKind::Input => self.points(&name, place.clone(), var.ty, true),
                 SectionKind::Output => self.points(&name, place.clone(), var.ty, false),
                 _ => self.hir.names.push((name, place)),
@@ -163,7 +174,14 @@ impl Analysis<'_> {
                 element,
             } => self.array_points(name, place, &dimensions, element, input, String::new()),
             TypeKind::Struct(index) => {
-                let members = self.types.structs[index as usize].members.clone();
+                let def = &self.types.structs[index as usize];
+                if let Some(overlay) = &def.overlay {
+                    let last = i64::from(overlay.bytes) - 1;
+                    let byte = TypeId::of(super::elementary::El::Byte);
+                    self.array_points(name, place, &[(0, last)], byte, input, String::new());
+                    return;
+                }
+                let members = def.members.clone();
                 for (position, member) in (0..).zip(members) {
                     let name = format!("{name}.{}", self.text(member.name));
                     let place = place.clone().step(Step::Field(position));
@@ -198,35 +216,6 @@ impl Analysis<'_> {
         }
     }
 
-    /// A unit without parameters that runs a program instance.
-    pub(crate) fn program_call(&mut self, program: PouId, tag: TagId, name: &str) -> hir::PouId {
-        let span = self.pou(program).span;
-        let callee = self.want(program);
-        let mut code = Code::default();
-        code.paths.push(Path {
-            root: Root::Tag(tag),
-            steps: Vec::new(),
-            span,
-        });
-        code.calls.push(Call {
-            callee,
-            refs: vec![PathId(0)],
-            args: Vec::new(),
-            outputs: Vec::new(),
-        });
-        code.exprs.push(Expr {
-            kind: ExprKind::Call(crate::hir::code::CallId(0)),
-            ty: Elementary::Bool,
-            span,
-        });
-        code.stmts.push(Stmt {
-            kind: StmtKind::Eval(ExprId(0)),
-            span,
-        });
-        code.body.push(StmtId(0));
-        self.synthetic(format!("{name}'"), code, span)
-    }
-
     /// A unit that no source declares. Ids follow those of the units that are wanted, so it is kept
     /// aside until all are known.
     pub(crate) fn synthetic(
@@ -248,139 +237,5 @@ impl Analysis<'_> {
             },
         ));
         id
-    }
-
-    /// What a direct address stands for.
-    pub(crate) fn direct_place(
-        &mut self,
-        unit: UnitId,
-        id: st::Id<st::Expr>,
-    ) -> Option<(Place, TypeId, Rights)> {
-        let range = self.unit(unit).arena[id].range;
-        self.unsupported(unit, range, "a direct address");
-        None
-    }
-
-    /// A variable at an address.
-    pub(crate) fn located(&mut self, id: PouId, var: &mut Var, location: st::Id<st::Expr>) {
-        let unit = self.pou(id).unit;
-        let range = self.unit(unit).arena[location].range;
-        self.unsupported(unit, range, "a variable at an address");
-        var.ty = TypeId::ERROR;
-    }
-
-    fn configuration(&mut self, unit: UnitId, configuration: &st::Configuration) {
-        let arena = &self.unit(unit).arena;
-        for section in &arena[configuration.sections] {
-            self.unsupported(unit, section.range, section.kind.as_str());
-        }
-        for resource in &arena[configuration.resources] {
-            for section in &arena[resource.sections] {
-                self.unsupported(unit, section.range, section.kind.as_str());
-            }
-            let tasks: Vec<(iecc_ast::Symbol, Task)> = arena[resource.tasks]
-                .iter()
-                .map(|task| (task.name.name, self.task(unit, task)))
-                .collect();
-            let base = self.hir.tasks.len();
-            self.hir
-                .tasks
-                .extend(tasks.iter().map(|(_, task)| task.clone()));
-            let single = arena[resource.programs].len() == 1;
-            for program in &arena[resource.programs] {
-                self.program_config(unit, program, &tasks, base, single);
-            }
-        }
-        self.hir.name = self.text(configuration.name.name).to_owned();
-    }
-
-    fn task(&mut self, unit: UnitId, task: &st::Task) -> Task {
-        let scope = super::resolve::TypeScope {
-            unit,
-            namespace: super::signature::NamespaceId::GLOBAL,
-            bindings: None,
-            pou: None,
-        };
-        let (mut interval_ns, mut priority) = (0, 0);
-        for parameter in &self.unit(unit).arena[task.parameters] {
-            let (st::ArgumentKind::Input(name), Some(value)) = (parameter.kind, parameter.value)
-            else {
-                continue;
-            };
-            if name.name == self.words.interval {
-                let ty = TypeId::of(super::elementary::El::Time);
-                let value = self.constant(scope, value, ty).and_then(|v| v.as_int());
-                interval_ns = value.and_then(|v| u64::try_from(v).ok()).unwrap_or(0);
-            } else if name.name == self.words.priority {
-                let ty = TypeId::of(super::elementary::El::Uint);
-                priority = self
-                    .constant(scope, value, ty)
-                    .and_then(|v| v.as_int())
-                    .unwrap_or(0) as u32;
-            } else {
-                self.unsupported(unit, name.range, "this parameter of a task");
-            }
-        }
-        Task {
-            name: self.text(task.name.name).to_owned(),
-            trigger: Trigger::Timed {
-                interval_ns,
-                single: None,
-            },
-            priority,
-            calls: Vec::new(),
-        }
-    }
-
-    fn program_config(
-        &mut self,
-        unit: UnitId,
-        program: &st::ProgramConfig,
-        tasks: &[(iecc_ast::Symbol, Task)],
-        base: usize,
-        single: bool,
-    ) {
-        let arena = &self.unit(unit).arena;
-        let namespace = self.units[unit.index()].namespace;
-        for element in &arena[program.elements] {
-            let (st::ProgramElement::Source { variable, .. }
-            | st::ProgramElement::Sink { variable, .. }
-            | st::ProgramElement::Task {
-                block: variable, ..
-            }) = element;
-            let range = arena[*variable].range;
-            self.unsupported(unit, range, "a connection of a program instance");
-        }
-        let def = self.path(unit, namespace, program.program);
-        let def = def.and_then(|defs| defs.first().copied());
-        let Some(super::signature::Def::Pou(pou)) = def else {
-            let span = self.span(unit, arena[program.program].range);
-            self.error(Message::E1009, span, "no program has this name");
-            return;
-        };
-        let name = self.text(program.name.name).to_owned();
-        let tag = self.program_instance(pou, &name);
-        if single {
-            self.public_points(pou, tag);
-        }
-        let call = self.program_call(pou, tag, &name);
-        let task = program.task.and_then(|task| {
-            let found = tasks.iter().position(|(known, _)| *known == task.name);
-            if found.is_none() {
-                let span = self.span(unit, task.range);
-                let message = format!("no task is named `{}`", self.text(task.name));
-                self.error(Message::E6042, span, message);
-            }
-            found
-        });
-        match task {
-            Some(task) => self.hir.tasks[base + task].calls.push(call),
-            None => self.hir.tasks.push(Task {
-                name,
-                trigger: Trigger::EveryScan,
-                priority: u32::MAX,
-                calls: vec![call],
-            }),
-        }
     }
 }

@@ -5,6 +5,7 @@
 
 use super::analysis::{Analysis, MAX_RESOLUTION_DEPTH, Resolution};
 use super::elementary::El;
+use super::overlay::Shape;
 use super::signature::{Bindings, Def, Initial, NamespaceId, TypeDeclId, UnitId};
 use super::storage::MAX_ELEMENTS;
 use super::types::{AliasDef, EnumDef, Member, ReferenceKind, StructDef, TypeId, TypeKind};
@@ -118,12 +119,16 @@ impl Analysis<'_> {
                 element,
             } => self.array(scope, dimensions, element, written.range),
             Written::Struct { members, overlap } => {
-                if overlap {
-                    return self.unsupported(scope.unit, written.range, "OVERLAP");
-                }
-                self.structure(scope, members, name, written.range)
+                let shape = if overlap {
+                    Shape::Overlap
+                } else {
+                    Shape::Plain
+                };
+                self.structure(scope, members, name, written.range, shape)
             }
-            Written::Union { .. } => self.unsupported(scope.unit, written.range, "UNION"),
+            Written::Union { members } => {
+                self.structure(scope, members, name, written.range, Shape::Union)
+            }
             Written::Enum { base, values } => {
                 self.enumeration(scope, base, values, name, written.range)
             }
@@ -387,14 +392,12 @@ impl Analysis<'_> {
         members: st::List<st::VarDecl>,
         name: Option<Symbol>,
         range: TextRange,
+        shape: Shape,
     ) -> TypeId {
         let unit = self.unit(scope.unit);
         let (mut made, mut by_name) = (Vec::new(), FxHashMap::default());
         for decl in &unit.arena[members] {
-            if let Some(location) = decl.location {
-                let range = unit.arena[location].range;
-                self.unsupported(scope.unit, range, "a member at an address");
-            }
+            let partly = self.member_location(scope.unit, decl);
             let ty = self.written_type(scope, decl.ty, None);
             let initial = decl.initial.map(|expr| Initial {
                 unit: scope.unit,
@@ -413,14 +416,19 @@ impl Analysis<'_> {
                     name: ident.name,
                     ty,
                     initial,
+                    partly,
                     span,
                 });
             }
         }
+        let Ok(overlay) = self.overlay(scope, members, &made, shape) else {
+            return TypeId::ERROR;
+        };
         self.types.add_struct(StructDef {
             name,
             members: made,
             by_name,
+            overlay,
             span: unit.span(range),
         })
     }

@@ -161,6 +161,8 @@ pub struct Var {
     pub access: Option<st::ModifierKind>,
     /// Where it lives.
     pub storage: Storage,
+    /// Whether VAR_CONFIG says at which address it lives.
+    pub partly: bool,
 }
 
 /// Where a variable lives.
@@ -176,8 +178,17 @@ pub enum Storage {
     Global(GlobalId),
     /// Nowhere: it is known.
     Const(Const),
-    /// At a place of the state.
-    Located(hir::Place),
+    /// At an address.
+    Located(super::address::Address),
+}
+
+/// A tag and the way into it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spot {
+    /// The tag.
+    pub tag: hir::TagId,
+    /// The way.
+    pub steps: Vec<hir::code::PathStep>,
 }
 
 /// A global variable.
@@ -196,7 +207,13 @@ pub struct Global {
     /// Its value, if it is a constant with one value.
     pub value: Option<Const>,
     /// Where it lives; `None` for a constant with one value.
-    pub place: Option<hir::Place>,
+    pub spot: Option<Spot>,
+    /// The unit it is declared in.
+    pub unit: UnitId,
+    /// The declaration.
+    pub decl: st::VarDecl,
+    /// How far its type and value are.
+    pub state: State,
 }
 
 impl Pou {

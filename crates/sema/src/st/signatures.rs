@@ -2,10 +2,10 @@
 
 use super::analysis::{Analysis, MAX_RESOLUTION_DEPTH};
 use super::resolve::TypeScope;
-use super::signature::{Def, Initial, Part, PouId, State, Storage, Var};
+use super::signature::{Initial, Part, PouId, State, Storage, Var};
 use super::types::{TypeId, TypeKind};
 use iecc_ast::st::{self, Declarations, Member, ModifierKind, PouKind, SectionKind, UnitKind};
-use iecc_diag::{Code, Diagnostic};
+use iecc_diag::Code;
 
 /// How a unit is called. Positions are those of its variables.
 #[derive(Debug, Clone, Default)]
@@ -130,12 +130,11 @@ impl Analysis<'_> {
                     | ModifierKind::Internal
             )
         });
+        self.allowed_section(unit_id, kind, section);
         let Declarations::Variables(variables) = section.declarations else {
-            let what = section.kind.as_str();
-            self.unsupported(unit_id, section.range, what);
             return;
         };
-        self.allowed_section(unit_id, kind, section);
+        self.modifiers_go_together(unit_id, section);
         for decl in &unit.arena[variables] {
             let owned = self.pou_scope(id);
             let ty = self.variable_type(owned.as_scope(), decl);
@@ -154,12 +153,17 @@ impl Analysis<'_> {
                     edge: decl.edge,
                     access,
                     storage: Storage::Local,
+                    partly: false,
                 };
-                if let Some(location) = decl.location {
-                    self.located(id, &mut var, location);
+                if let Some(location) = decl.location
+                    && section.kind != SectionKind::Global
+                {
+                    self.located(id, kind, &mut var, location);
                 }
                 var.ty = self.check_instance(id, section.kind, &var);
-                if section.kind == SectionKind::External {
+                if section.kind == SectionKind::Global {
+                    self.own_global(id, &mut var);
+                } else if section.kind == SectionKind::External {
                     self.external(id, &mut var);
                 } else if constant {
                     self.fold_constant(id, &mut var);
@@ -184,10 +188,7 @@ impl Analysis<'_> {
                 self.unsupported(unit, section.range, section.kind.as_str());
                 return;
             }
-            (PouKind::Program, S::Global | S::Access) => {
-                self.unsupported(unit, section.range, section.kind.as_str());
-                return;
-            }
+            (PouKind::Program, S::Global | S::Access) => true,
             (_, S::Global | S::Access | S::Config) => false,
         };
         if !allowed {
@@ -214,7 +215,7 @@ impl Analysis<'_> {
     }
 
     /// Completes the instances inside a type; gives the error type for a cycle.
-    fn complete_contained(&mut self, ty: TypeId, span: iecc_source::Span) -> TypeId {
+    pub(crate) fn complete_contained(&mut self, ty: TypeId, span: iecc_source::Span) -> TypeId {
         let mut at = ty;
         loop {
             match self.types.base(at).clone() {
@@ -253,36 +254,6 @@ impl Analysis<'_> {
                     return ty;
                 }
                 _ => return ty,
-            }
-        }
-    }
-
-    fn external(&mut self, id: PouId, var: &mut Var) {
-        let (unit, namespace) = (self.pou(id).unit, self.pou(id).namespace);
-        let span = self.span(unit, var.range);
-        match self.lookup(namespace, var.name) {
-            [Def::Global(global)] => {
-                let global = *global;
-                let declared = self.global(global).clone();
-                if self.types.strip(declared.ty) != self.types.strip(var.ty)
-                    && var.ty != TypeId::ERROR
-                {
-                    let message = format!(
-                        "`{}` is a {} where it is declared, not a {}",
-                        self.text(var.name),
-                        self.type_name(declared.ty),
-                        self.type_name(var.ty)
-                    );
-                    let diagnostic = Diagnostic::new(Code::E6040, span, message);
-                    self.report(diagnostic.also(declared.span, "declared here"));
-                }
-                var.constant |= declared.constant;
-                var.storage = Storage::Global(global);
-            }
-            _ => {
-                let message = format!("no global variable is named `{}`", self.text(var.name));
-                self.error(Code::E6041, span, message);
-                var.ty = TypeId::ERROR;
             }
         }
     }

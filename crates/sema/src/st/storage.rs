@@ -55,7 +55,13 @@ impl Analysis<'_> {
                 let element = self.storage(element);
                 Type::Array(self.array_storage(&dimensions, element))
             }
-            TypeKind::Struct(index) => Type::Struct(self.struct_storage(index)),
+            TypeKind::Struct(index) => match &self.types.structs[index as usize].overlay {
+                Some(overlay) => {
+                    let (byte, bytes) = (Type::Elementary(Elementary::Usint), overlay.bytes);
+                    Type::Array(self.hir.types.array(byte, bytes))
+                }
+                None => Type::Struct(self.struct_storage(index)),
+            },
             TypeKind::Instance(pou) => Type::Struct(self.instance_struct(pou)),
             TypeKind::Error
             | TypeKind::Nothing
@@ -244,6 +250,8 @@ impl Analysis<'_> {
                 }
                 Some(init)
             }
+            // Members that overlap begin as 0.
+            TypeKind::Struct(index) if self.types.structs[index as usize].overlay.is_some() => None,
             TypeKind::Struct(index) => {
                 let members = self.types.structs[index as usize].members.clone();
                 let mut parts = Vec::new();

@@ -107,8 +107,19 @@ pub struct StructDef {
     pub members: Vec<Member>,
     /// Their positions.
     pub by_name: FxHashMap<Symbol, u32>,
+    /// Where the members lie, if they overlap.
+    pub overlay: Option<Overlay>,
     /// The declaration.
     pub span: Span,
+}
+
+/// Members that overlap: numbers in an array of bytes, the lowest byte first.
+#[derive(Debug, Clone)]
+pub struct Overlay {
+    /// How many bytes there are.
+    pub bytes: u32,
+    /// The first bit of each member.
+    pub first: Vec<u32>,
 }
 
 /// A member of a structure.
@@ -120,6 +131,8 @@ pub struct Member {
     pub ty: TypeId,
     /// The initial value its declaration gives, in the unit of the structure.
     pub initial: Option<super::signature::Initial>,
+    /// Whether VAR_CONFIG says at which address it lives.
+    pub partly: bool,
     /// The declaration.
     pub span: Span,
 }

@@ -464,10 +464,7 @@ impl Body<'_, '_> {
             steps,
             rights: Rights::All,
         };
-        match var.edge {
-            None => self.store(&target, var.ty, &operand, operand.range),
-            Some(edge) => self.edge_input(&target, edge, &operand),
-        }
+        self.store(&target, var.ty, &operand, operand.range);
     }
 
     /// The steps to a variable of an instance or of what it extends.

@@ -3,9 +3,7 @@
 use super::library::Given;
 use super::object::{Run, Target, function_target};
 use super::{Body, Operand, OperandKind, Place, Rights};
-use crate::hir::code::{
-    BinaryOp as Op, Call, ExprId, ExprKind, PathId, Root, StmtKind, UnaryOp as Unary,
-};
+use crate::hir::code::{Call, ExprId, ExprKind, PathId, StmtKind};
 use crate::st::constant::Const;
 use crate::st::signature::{Bindings, PouId, Var};
 use crate::st::types::{TypeId, TypeKind};
@@ -435,46 +433,5 @@ impl Body<'_, '_> {
         if let OperandKind::Value(value) = result.kind {
             self.before(StmtKind::Eval(value), range);
         }
-    }
-
-    /// An input that sees edges.
-    pub(super) fn edge_input(&mut self, target: &Place, edge: st::Edge, operand: &Operand) {
-        let range = operand.range;
-        let bool_storage = crate::hir::Elementary::Bool;
-        let mut memory = target.clone();
-        if let Some(crate::hir::code::PathStep::Field(field)) = memory.steps.last_mut() {
-            *field += 1;
-        }
-        let now = self.as_scalar(operand, TypeId::BOOL);
-        let level = match edge {
-            st::Edge::Rising => now,
-            st::Edge::Falling => {
-                self.add_expr(ExprKind::Unary(Unary::Not, now), bool_storage, range)
-            }
-        };
-        let held = self.add_local("edge", crate::hir::Type::Elementary(bool_storage));
-        let path = self.add_path(Root::Local(held), Vec::new(), range);
-        self.before(StmtKind::Assign(path, level), range);
-        let load = |body: &mut Self, place: &Place| {
-            let path = body.path_of(place, range);
-            body.add_expr(ExprKind::Load(path), bool_storage, range)
-        };
-        let held_place = Place {
-            root: Root::Local(held),
-            steps: Vec::new(),
-            rights: Rights::All,
-        };
-        let (level, was) = (load(self, &held_place), load(self, &memory));
-        let not_was = self.add_expr(ExprKind::Unary(Unary::Not, was), bool_storage, range);
-        let edge = self.add_expr(
-            ExprKind::Binary(Op::And, level, not_was),
-            bool_storage,
-            range,
-        );
-        let path = self.path_of(target, range);
-        self.before(StmtKind::Assign(path, edge), range);
-        let level = load(self, &held_place);
-        let path = self.path_of(&memory, range);
-        self.before(StmtKind::Assign(path, level), range);
     }
 }

@@ -6,7 +6,9 @@
 
 mod call;
 mod coerce;
+mod connect;
 mod convert;
+mod edge;
 mod expr;
 mod function;
 mod generic;
@@ -20,6 +22,7 @@ mod place;
 mod reference;
 mod stmt;
 
+pub(crate) use connect::Connections;
 pub(crate) use operand::{Operand, OperandKind, Place, Rights};
 
 use super::analysis::Analysis;
@@ -240,6 +243,7 @@ impl Body<'_, '_> {
                 self.locals[index] = Some(self.var_local(var));
             }
         }
+        self.edge_locals(id);
         for &index in &shape.results {
             let local = self.locals[index].expect("outputs by value are locals");
             self.code.results.push(local);

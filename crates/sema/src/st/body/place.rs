@@ -23,7 +23,7 @@ impl Body<'_, '_> {
             Written::Part { base, part } => self.part(base, part, range),
             Written::Deref(base) => self.deref(base, range),
             Written::This => self.this(range),
-            Written::Direct(_) => self.direct(id, range),
+            Written::Direct(_) => self.direct(id, None, range),
             Written::Super => self.error(Message::E3003, range, "SUPER stands in calls only"),
             _ => self.expr(id, want),
         }
@@ -139,6 +139,13 @@ impl Body<'_, '_> {
                 let rights = own_rights(&var);
                 self.place_operand(Root::Ref(*reference), Vec::new(), rights, var.ty, range)
             }
+            Storage::Field(_) if var.edge.is_some() => match self.locals[index] {
+                Some(local) => {
+                    let rights = Rights::OwnInput;
+                    self.place_operand(Root::Local(local), Vec::new(), rights, var.ty, range)
+                }
+                None => self.not_constant(range),
+            },
             Storage::Field(_) | Storage::Global(_) | Storage::Const(_) | Storage::Located(_) => {
                 let this = self.this_as(pou_home);
                 self.instance_variable(this.root, this.steps, &var, false, range)
@@ -161,6 +168,11 @@ impl Body<'_, '_> {
     ) -> Operand {
         match &var.storage {
             Storage::Const(value) => Operand::constant(value.clone(), var.ty, range),
+            Storage::Field(_) if var.edge.is_some() && !outside => {
+                let name = self.text(var.name);
+                let message = format!("the edge of `{name}` can be seen in the body only");
+                self.error(Message::E1013, range, message)
+            }
             Storage::Field(field) => {
                 steps.push(PathStep::Field(*field));
                 let rights = if outside {
@@ -174,9 +186,13 @@ impl Body<'_, '_> {
                 let id = *id;
                 self.global_place(id, var.constant, range)
             }
-            Storage::Located(place) => {
-                let place = place.clone();
-                self.located_place(&place, var.ty, own_rights(var), range)
+            Storage::Located(address) => {
+                let rights = match address.area {
+                    st::Area::Input => Rights::OwnInput,
+                    st::Area::Output | st::Area::Memory => own_rights(var),
+                };
+                let address = *address;
+                self.at_address(address, var.ty, rights, range)
             }
             // What is wrong with its declaration was reported there.
             Storage::Local | Storage::Ref(_) if var.ty == TypeId::ERROR => Operand::error(range),
@@ -230,6 +246,7 @@ impl Body<'_, '_> {
             return self.global_place(id, false, range);
         }
         let text = self.text(name);
+        self.an.complete_global(id);
         let ty = self.type_name(self.an.global(id).ty);
         let message = format!("`{text}` is a global variable that this unit does not declare");
         let note = format!("declare it: VAR_EXTERNAL {text} : {ty}; END_VAR");
@@ -245,42 +262,68 @@ impl Body<'_, '_> {
         constant: bool,
         range: TextRange,
     ) -> Operand {
+        self.an.complete_global(id);
         let global = self.an.global(id).clone();
         if let Some(value) = global.value {
             return Operand::constant(value, global.ty, range);
         }
-        let Some(place) = global.place else {
+        if global.ty == TypeId::ERROR {
             return Operand::error(range);
+        }
+        let Some(spot) = global.spot else {
+            return self.not_constant(range);
         };
         let rights = if constant || global.constant {
             Rights::Constant
+        } else if self.an.is_input(id) {
+            Rights::OwnInput
         } else {
             Rights::All
         };
-        self.located_place(&place, global.ty, rights, range)
+        self.place_operand(Root::Tag(spot.tag), spot.steps, rights, global.ty, range)
     }
 
-    fn located_place(
+    /// What lies at an address.
+    pub(super) fn at_address(
         &mut self,
-        place: &crate::hir::Place,
+        address: crate::st::address::Address,
         ty: TypeId,
         rights: Rights,
         range: TextRange,
     ) -> Operand {
-        let steps = place.path.iter().map(|step| match *step {
-            crate::hir::Step::Field(index) => PathStep::Field(index),
-            crate::hir::Step::Index(index) => PathStep::Index(index),
-            crate::hir::Step::Bit(first) => PathStep::Bits { first, count: 1 },
-        });
-        let steps = steps.collect();
-        self.place_operand(Root::Tag(place.tag), steps, rights, ty, range)
+        if self.constant_only {
+            return self.not_constant(range);
+        }
+        match self.an.spot(address, ty) {
+            Some(spot) => self.place_operand(Root::Tag(spot.tag), spot.steps, rights, ty, range),
+            None => {
+                let (text, name) = (address.text(), self.type_name(ty));
+                let message = format!("{name} at {text}, which others overlap, is not compiled");
+                self.error(Message::E2010, range, message)
+            }
+        }
     }
 
-    fn direct(&mut self, id: st::Id<st::Expr>, range: TextRange) -> Operand {
-        match self.an.direct_place(self.unit, id) {
-            Some((place, ty, rights)) => self.located_place(&place, ty, rights, range),
-            None => Operand::error(range),
-        }
+    /// A direct address, as a value of a type of its width or as bits.
+    pub(super) fn direct(
+        &mut self,
+        id: st::Id<st::Expr>,
+        want: Option<TypeId>,
+        range: TextRange,
+    ) -> Operand {
+        let Some(address) = self.an.address(self.unit, id) else {
+            if self.an.is_partly(self.unit, id) {
+                let message = "an address with `*` stands behind AT only";
+                return self.error(Message::E3003, range, message);
+            }
+            return Operand::error(range);
+        };
+        let rights = match address.area {
+            st::Area::Input => Rights::OwnInput,
+            st::Area::Output | st::Area::Memory => Rights::All,
+        };
+        let ty = want.unwrap_or(address.plain_type());
+        self.at_address(address, ty, rights, range)
     }
 
     /// `base.member`.
@@ -311,7 +354,11 @@ impl Body<'_, '_> {
                     return self.no_member(base.ty, member, candidates);
                 };
                 let ty = def.members[position as usize].ty;
-                steps.push(PathStep::Field(position));
+                let first = def.overlay.as_ref().map(|o| o.first[position as usize]);
+                match first {
+                    Some(first) => steps.extend(self.an.overlay_steps(first, ty)),
+                    None => steps.push(PathStep::Field(position)),
+                }
                 self.place_operand(root, steps, rights, ty, range)
             }
             TypeKind::Instance(pou) => {

@@ -16,6 +16,7 @@ impl Body<'_, '_> {
     pub(super) fn statements_of(&mut self, id: PouId) {
         let mut body = Vec::new();
         self.initialise(id, &mut body);
+        self.sample_edges(id, &mut body);
         if let Some(eno) = self.eno {
             let range = TextRange::default();
             let path = self.add_path(Root::Local(eno), Vec::new(), range);
