@@ -3,9 +3,10 @@
 //! Cells are read here, by rules that are simpler than those of the compiler, so that a mistake in
 //! the compiler's literals cannot hide itself.
 
+use iecc_ast::st::time::{nanoseconds, time_text};
+use iecc_ast::st::{TimeKind, TimeLiteral};
 use iecc_driver::run::Shape;
-use iecc_grammar::st::parse_time;
-use iecc_ir::Type;
+use iecc_ir::{Type, View};
 
 /// A value of a cell: the bits of a scalar, or length and characters of a string.
 pub(crate) type Bits = Vec<u64>;
@@ -70,11 +71,11 @@ fn order(bits: u64, ty: Type) -> Option<i128> {
 }
 
 /// A value for people.
-pub(crate) fn show(bits: &[u64], shape: Shape) -> String {
+pub(crate) fn show(bits: &[u64], shape: Shape, view: View) -> String {
     match shape {
         Shape::Scalar(Type::I1) => if bits[0] == 0 { "FALSE" } else { "TRUE" }.to_owned(),
         Shape::Scalar(ty @ (Type::I8 | Type::I16 | Type::I32 | Type::I64)) => {
-            format!("{} (16#{:X})", ty.signed(bits[0]), bits[0])
+            format!("{} (16#{:X})", show_integer(bits[0], ty, view), bits[0])
         }
         Shape::Scalar(Type::F32) => {
             let bits = bits[0] as u32;
@@ -82,6 +83,19 @@ pub(crate) fn show(bits: &[u64], shape: Shape) -> String {
         }
         Shape::Scalar(Type::F64) => format!("{:?} (16#{:X})", f64::from_bits(bits[0]), bits[0]),
         Shape::Text { .. } => show_string(bits),
+    }
+}
+
+fn show_integer(bits: u64, ty: Type, view: View) -> String {
+    let ns = ty.signed(bits);
+    let time = |kind: TimeKind| time_text(TimeLiteral { kind, ns });
+    match view {
+        View::Plain => ns.to_string(),
+        View::Unsigned | View::Bits => bits.to_string(),
+        View::Time => time(TimeKind::Time),
+        View::Date => time(TimeKind::Date),
+        View::TimeOfDay => time(TimeKind::TimeOfDay),
+        View::DateTime => time(TimeKind::DateTime),
     }
 }
 
@@ -97,9 +111,11 @@ fn show_string(bits: &[u64]) -> String {
 
 fn scalar(text: &str, ty: Type) -> Result<u64, String> {
     let no = || format!("`{text}` is no value of {} bits", ty.bits());
-    if let Some(time) = parse_time(text) {
-        let fits = ty == Type::I64;
-        return fits.then_some(time.ns as u64).ok_or_else(no);
+    if let Some((prefix, value)) = text.split_once('#')
+        && let Some(kind) = TimeKind::of_prefix(prefix)
+    {
+        let ns = nanoseconds(kind.shape(), value)?;
+        return (ty == Type::I64).then_some(ns as u64).ok_or_else(no);
     }
     if text.starts_with(['\'', '"']) {
         let units = string(text, ty)?;
@@ -304,7 +320,10 @@ mod tests {
         assert_eq!(read("\"$0041\u{20ac}\"", WIDE), Ok(vec![2, 0x41, 0x20ac]));
         assert!(same(&[1, 0x61], &[1, 0x61, 7, 7, 7, 7], TEXT, 0));
         assert!(!same(&[1, 0x61], &[2, 0x61, 7, 7, 7, 7], TEXT, 0));
-        assert_eq!(show(&[2, 0x61, 0x0a, 7, 7, 7], TEXT), "'a$0A' of length 2");
+        assert_eq!(
+            show(&[2, 0x61, 0x0a, 7, 7, 7], TEXT, View::Plain),
+            "'a$0A' of length 2"
+        );
     }
 
     #[test]

@@ -254,7 +254,7 @@ impl<'c> Plan<'c> {
             let expected = expected.as_ref()?;
             let found = probe.get(inputs, &given.outputs);
             let right = same(expected, &found, probe.shape, self.case.ulp);
-            let text = |bits: &[u64]| show(bits, probe.shape);
+            let text = |bits: &[u64]| show(bits, probe.shape, probe.view);
             (!right).then(|| {
                 let (expected, found) = (text(expected), text(&found));
                 format!("`{}` is {found}, not {expected}", probe.path)

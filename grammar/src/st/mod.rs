@@ -22,7 +22,6 @@ mod soft;
 pub(crate) mod token;
 mod unit;
 
-pub use build::time::parse_time;
 pub use lexer::{Tokens, lex};
 pub use slice::{Fragment, FragmentKind, slice};
 pub use token::{Kind, Token};

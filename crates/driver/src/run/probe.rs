@@ -2,10 +2,10 @@
 //! before a scan, and what they look at after it. Unlike columns of a trace, a string is one value.
 
 use super::instrument::{Poke, Watch, instrument};
-use super::names::{Names, leaves, type_of};
+use super::names::{Names, leaves, type_of, view_of};
 use super::session::Cell;
 use iecc_diag::Diagnostic;
-use iecc_ir::{Layout, MemType, Module, Place, PlaceType, Root, Type};
+use iecc_ir::{Layout, MemType, Module, Place, PlaceType, Root, Type, View};
 
 /// Members of a string, in their order.
 const STRING_MEMBERS: [&str; 2] = ["LEN", "DATA"];
@@ -31,6 +31,8 @@ pub struct Probe {
     pub path: String,
     /// What it holds.
     pub shape: Shape,
+    /// How people see it.
+    pub view: View,
     cells: Vec<Cell>,
     /// What says that a value that is set counts, for each cell of a place that is no input.
     counts: Vec<Cell>,
@@ -49,6 +51,7 @@ pub struct Probes {
 struct Found {
     path: String,
     shape: Shape,
+    view: View,
     root: Root,
     leaves: Vec<(String, Place)>,
 }
@@ -149,6 +152,7 @@ fn find(module: &Module, names: &Names<'_>, path: &str) -> Result<Found, Diagnos
     Ok(Found {
         path: path.to_owned(),
         shape,
+        view: view_of(module, &place),
         root: place.root,
         leaves,
     })
@@ -213,6 +217,7 @@ fn place(module: &Module, found: Vec<Found>, added: &[Place], counts: &[Place]) 
         Probe {
             path: found.path,
             shape: found.shape,
+            view: found.view,
             cells,
             counts,
         }

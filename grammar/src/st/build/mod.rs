@@ -7,7 +7,7 @@ mod expr;
 mod literal;
 mod number;
 mod stmt;
-pub(super) mod time;
+mod time;
 mod types;
 mod unit;
 

@@ -5,14 +5,6 @@ use iecc_ast::st::time::nanoseconds;
 use iecc_ast::st::{Expr, ExprKind, Id, Literal, TimeKind, TimeLiteral, TimeShape};
 use iecc_diag::{Code, Diagnostic};
 
-/// The value of a literal of a time type, with its prefix; `None` if the text is none.
-pub fn parse_time(text: &str) -> Option<TimeLiteral> {
-    let (prefix, value) = text.split_once('#')?;
-    let kind = TimeKind::of_prefix(prefix)?;
-    let ns = nanoseconds(kind.shape(), value).ok()?;
-    Some(TimeLiteral { kind, ns })
-}
-
 impl Build<'_, '_> {
     pub(crate) fn time(&mut self, start: u32, end: u32) -> Id<Expr> {
         let text = self.text(start, end);
