@@ -1,6 +1,7 @@
 //! What the tests share: where outside data lies, a replayable random source, mutators that fuzz
 //! targets use as well, file tests in the text form of the IR, and the comparison of engines.
 
+pub mod cases;
 pub mod check;
 pub mod corpus;
 pub mod differential;

@@ -5,28 +5,17 @@
 )]
 
 use iecc_ast::Names;
-use iecc_conformance::{Case, CaseResult, Outcome, features, read_suite, run_module};
+use iecc_conformance::{
+    Case, CaseResult, Outcome, errors, extensions, features, parameters, run_module,
+};
 use iecc_diag::{Diagnostics, render_text};
-use iecc_driver::{EngineKind, Levels, Sources};
+use iecc_driver::EngineKind;
 use iecc_grammar::st::parse_file;
 use iecc_ir::parse_module;
 use iecc_source::SourceMap;
+use iecc_tests::cases::suite;
 use iecc_tests::shared::shared_dir;
-use std::path::PathBuf;
-
-/// The cases of the project.
-fn suite() -> Vec<Case> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("conformance");
-    let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
-    let sources = Sources::load(&mut map, &[folder], &Levels::default(), &mut diagnostics);
-    let said: Vec<_> = diagnostics.iter().collect();
-    assert!(said.is_empty(), "{said:?}");
-    let sources = sources.expect("nothing was said");
-    read_suite(&map, sources.files()).unwrap_or_else(|misread| {
-        let misread: Vec<String> = misread.iter().map(ToString::to_string).collect();
-        panic!("{}", misread.join("\n"))
-    })
-}
+use std::collections::BTreeSet;
 
 #[test]
 fn every_case_can_be_read() {
@@ -69,6 +58,20 @@ fn csv_rows(text: &str) -> Vec<Vec<String>> {
         cells
     };
     text.lines().skip(1).map(row).collect()
+}
+
+/// Rows of the statement name cases that exist.
+#[test]
+fn what_the_statement_says_is_shown_by_cases() {
+    let suite: BTreeSet<String> = suite().into_iter().map(|case| case.name).collect();
+    let named = parameters().iter().map(|row| &row.cases);
+    let named = named.chain(errors().iter().map(|row| &row.cases));
+    let named = named.chain(extensions().iter().map(|row| &row.cases));
+    let missing: Vec<_> = named
+        .flatten()
+        .filter(|name| !suite.contains(*name))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 /// What runs follows the grammar to the letter, whatever else is wrong with it.
