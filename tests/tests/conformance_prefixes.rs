@@ -55,6 +55,7 @@ fn duration(case: &Case, end: usize) -> Duration {
         dialect: case.dialect,
         ..FrontOptions::default()
     };
-    check(&map, &Sources::text(vec![file]), &options, &mut diagnostics);
+    let sources = Sources::text(&mut map, vec![file]);
+    check(&map, &sources, &options, &mut diagnostics);
     start.elapsed()
 }
