@@ -57,7 +57,7 @@ fn a_suite_that_passes_is_counted() {
     assert_eq!(stderr(&output), "");
     assert_eq!(output.status.code(), Some(0));
     let said = stdout(&output);
-    assert!(said.starts_with("1 cases passed, 0 failed\n"), "{said}");
+    assert!(said.starts_with("cases: 1 passed, 0 failed\n"), "{said}");
     let verilog = "simulated Verilog: 1 passed, 0 refused, 0 not applicable, 0 failed\n";
     assert!(said.ends_with(verilog), "{said}");
 }

@@ -2,8 +2,8 @@
 //! `(*~ W: E3007 *)` for warnings, several codes in one mark or several marks on a line.
 
 use crate::case::CaseError;
-use iecc_diag::{Code, Diagnostics, Severity};
-use iecc_source::SourceMap;
+use iecc_diag::{Code, Diagnostic, Diagnostics, Severity};
+use iecc_source::{FileId, SourceMap};
 use std::fmt;
 
 /// How a mark begins.
@@ -66,24 +66,25 @@ fn codes(mark: &str, line: usize) -> Result<Vec<Expected>, CaseError> {
     Ok(codes)
 }
 
-/// Compares what was said with what is expected; gives what is missing and what is too much.
+/// Compares what was said with what is expected about a file; gives what is missing and what is too
+/// much. What is said about another file, such as one of the library, is too much.
 pub(crate) fn compare(
     expected: &[Expected],
     diagnostics: &Diagnostics,
     map: &SourceMap,
+    file: FileId,
 ) -> Result<(), String> {
     let mut open = expected.to_vec();
     let mut faults = Vec::new();
     for diagnostic in diagnostics {
-        let place = diagnostic.primary.as_ref();
-        let found = Expected {
-            line: place.map_or(0, |label| map.start(label.span).line as usize),
-            code: diagnostic.code,
-            severity: diagnostic.severity,
-        };
-        match open.iter().position(|message| *message == found) {
+        let (own, found) = describe(diagnostic, map, file);
+        let wanted = open.iter().position(|message| own && *message == found);
+        match wanted {
             Some(index) => drop(open.remove(index)),
-            None => faults.push(format!("unexpected {found}: {}", diagnostic.message)),
+            None => {
+                let place = place_elsewhere(diagnostic, map, file);
+                faults.push(format!("unexpected {found}{place}: {}", diagnostic.message));
+            }
         }
     }
     faults.extend(open.iter().map(|message| format!("missing {message}")));
@@ -94,10 +95,29 @@ pub(crate) fn compare(
     }
 }
 
+/// Whether a message is about the file, and what is promised about messages.
+fn describe(diagnostic: &Diagnostic, map: &SourceMap, file: FileId) -> (bool, Expected) {
+    let place = diagnostic.primary.as_ref();
+    let found = Expected {
+        line: place.map_or(0, |label| map.start(label.span).line as usize),
+        code: diagnostic.code,
+        severity: diagnostic.severity,
+    };
+    (place.is_none_or(|label| label.span.file == file), found)
+}
+
+/// The name of the file that a message is about, if it is not the one.
+fn place_elsewhere(diagnostic: &Diagnostic, map: &SourceMap, file: FileId) -> String {
+    let other = diagnostic.primary.as_ref().map(|label| label.span.file);
+    let other = other.filter(|other| *other != file);
+    other.map_or(String::new(), |other| {
+        format!(" of {}", map.file(other).name())
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use iecc_diag::Diagnostic;
     use iecc_source::Span;
 
     const TEXT: &str = "a (*~ E0010 *)\n\nb (*~ W: E0011 E0012 *) (*~ E0013 *)\n";
@@ -135,14 +155,16 @@ mod tests {
     fn exactly_the_expected_messages_are_right() {
         let mut map = SourceMap::new();
         let file = map.add("case.st", TEXT);
+        let other = map.add("library.st", TEXT);
         let expected = [message(1, Code::E0010, Severity::Error)];
-        let said = |codes: &[(Code, u32)]| {
+        let said_about = |about, codes: &[(Code, u32)]| {
             let mut diagnostics = Diagnostics::new();
             for &(code, at) in codes {
                 diagnostics.push(Diagnostic::new(code, Span::point(file, at), "text"));
             }
-            compare(&expected, &diagnostics, &map)
+            compare(&expected, &diagnostics, &map, about)
         };
+        let said = |codes: &[(Code, u32)]| said_about(file, codes);
         assert_eq!(said(&[(Code::E0010, 0)]), Ok(()));
         let error = said(&[]).unwrap_err();
         assert_eq!(error, "missing error E0010 in line 1");
@@ -152,6 +174,11 @@ mod tests {
         assert_eq!(
             error,
             "unexpected error E0010 in line 3: text; missing error E0010 in line 1"
+        );
+        let error = said_about(other, &[(Code::E0010, 0)]).unwrap_err();
+        assert_eq!(
+            error,
+            "unexpected error E0010 in line 1 of case.st: text; missing error E0010 in line 1"
         );
     }
 }

@@ -81,7 +81,7 @@ fn compile_and_run(case: &Case) -> CaseResult {
     let file = map.add(format!("{}.st", case.name), case.text.as_str());
     let sources = Sources::text(&mut map, vec![file]);
     let module = compile(&map, &sources, &options(case), &mut diagnostics);
-    let front = compare(&case.messages, &diagnostics, &map);
+    let front = compare(&case.messages, &diagnostics, &map, file);
     match (front, module, &case.trace) {
         (Err(what), _, _) => CaseResult {
             front: Err(what),
@@ -102,6 +102,7 @@ fn compile_and_run(case: &Case) -> CaseResult {
 fn options(case: &Case) -> FrontOptions {
     FrontOptions {
         dialect: case.dialect,
+        entry: case.entry.clone(),
         ..FrontOptions::default()
     }
 }

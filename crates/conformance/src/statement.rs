@@ -67,7 +67,7 @@ are marked `pass` below. The feature numbers of edition 2 (2003) follow as a cro
 
 Every mark comes from the run of the conformance suite that wrote this statement: {} cases, of which
 {} run scan by scan against expected values and {} are wrong programs whose messages are expected.
-{} cases failed.
+Failed: {}.
 
 * `pass`: every case of the feature ran and gave what is expected.
 * `partial`: the engine ran some of the cases and refused the others with a message, or cannot show them.
@@ -369,6 +369,6 @@ mod tests {
         ] {
             assert!(text.lines().any(|found| found == line), "{line}\n{text}");
         }
-        assert!(text.contains("1 cases failed"), "{text}");
+        assert!(text.contains("Failed: 1."), "{text}");
     }
 }

@@ -70,7 +70,7 @@ pub fn summary(results: &[CaseResult]) -> String {
         .filter(|result| !result.failures().is_empty());
     let failed = failed.count();
     let passed = results.len() - failed;
-    let mut text = format!("{passed} cases passed, {failed} failed\n");
+    let mut text = format!("cases: {passed} passed, {failed} failed\n");
     for engine in EngineKind::ALL {
         let [passed, refused, other, failed] = counts(engine, results);
         let name = engine.name();
@@ -135,6 +135,6 @@ mod tests {
             failures(&cases, std::slice::from_ref(&result)),
             ["t71/good: it is wrong"]
         );
-        assert!(summary(&[result]).starts_with("0 cases passed, 1 failed\n"));
+        assert!(summary(&[result]).starts_with("cases: 0 passed, 1 failed\n"));
     }
 }
