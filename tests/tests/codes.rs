@@ -20,7 +20,7 @@ fn given_elsewhere(code: Code) -> bool {
 
 /// The examples of these codes are `.st` files, which the tests of the reader read.
 fn is_about_structured_text(code: Code) -> bool {
-    (Code::E0010..=Code::E0033).contains(&code)
+    (Code::E0010..=Code::E0034).contains(&code)
 }
 
 fn examples() -> PathBuf {

@@ -92,6 +92,7 @@ codes! {
     E0031 Error "THEN, DO or OF is missing";
     E0032 Error "name is missing";
     E0033 Error "declaration stands outside of a section";
+    E0034 Error "underline is misplaced in a name";
     // 1 names
     E1001 Error "tag does not exist";
     E1002 Error "member does not exist";

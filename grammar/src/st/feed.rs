@@ -35,7 +35,7 @@ pub(crate) fn feed(
         base: fragment.start,
         diagnostics,
         hole: false,
-        foreign: BTreeSet::new(),
+        misspelt: BTreeSet::new(),
         feed: Feed {
             tokens: Vec::with_capacity(list.len()),
             pragmas: Vec::new(),
@@ -53,8 +53,8 @@ struct Feeder<'f, 't> {
     diagnostics: &'f mut Diagnostics,
     /// Whether something was left out before the next token.
     hole: bool,
-    /// Names with letters outside ASCII.
-    foreign: BTreeSet<Symbol>,
+    /// Names that a message was given for.
+    misspelt: BTreeSet<Symbol>,
     feed: Feed,
 }
 
@@ -75,6 +75,7 @@ impl Feeder<'_, '_> {
                 token.kind = Kind::Word;
             }
             Kind::BadNumber => self.bad_number(token),
+            Kind::Word => self.word(token),
             _ => {}
         }
         if std::mem::take(&mut self.hole) {
@@ -177,12 +178,24 @@ impl Feeder<'_, '_> {
 
     /// One message for each name.
     fn foreign_word(&mut self, token: Token) {
-        if !self.foreign.insert(token.symbol) {
+        if !self.misspelt.insert(token.symbol) {
             return;
         }
         let text = self.tokens.slice(token);
         let message = format!("the name `{text}` has letters outside ASCII");
         self.report(Code::E0017, token, message);
+    }
+
+    /// Names that begin with two underlines are those of the standard library.
+    fn word(&mut self, token: Token) {
+        let text = self.tokens.slice(token);
+        let inner = text.trim_start_matches('_');
+        let misplaced = text.ends_with('_') || inner.contains("__");
+        if !misplaced || !self.misspelt.insert(token.symbol) {
+            return;
+        }
+        let message = format!("the name `{text}` has an underline at its end or beside another");
+        self.report(Code::E0034, token, message);
     }
 
     fn bad_number(&mut self, token: Token) {

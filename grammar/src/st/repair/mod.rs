@@ -41,14 +41,15 @@ impl Repaired {
     /// Whether a message has been given for what the parser finds wrong here.
     pub(crate) fn is_known(&self, error: &SyntaxError, feed: &Feed) -> bool {
         let ParseError::UnrecognizedToken {
-            token: (start, _, end),
+            token: (start, token, end),
             ..
         } = error
         else {
             return false;
         };
         let put_in = start == end && self.told.contains(start);
-        put_in || feed.holes.binary_search(start).is_ok() || self.has_bracket_message(*start)
+        let told = put_in || token.kind == Kind::BadNumber;
+        told || feed.holes.binary_search(start).is_ok() || self.has_bracket_message(*start)
     }
 
     /// Whether a message about a bracket has been given in the statement or declaration at a byte:
