@@ -10,8 +10,8 @@ use std::path::PathBuf;
 fn given_elsewhere(code: Code) -> bool {
     let name = code.as_str();
     // No file at all; 256 MiB of text; the command line; very many folders; the stimulus, whose
-    // examples are tables that the tests of runs read; cases of the conformance suite; and targets, whose own tests hold what they
-    // refuse.
+    // examples are tables that the tests of runs read; cases of the conformance suite; and targets,
+    // whose own tests hold what they refuse.
     ["E0001", "E0003", "E6030", "E6054", "E6080", "E6081"].contains(&name)
         || is_about_structured_text(code)
         || ("E6001".."E6020").contains(&name)

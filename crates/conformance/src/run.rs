@@ -7,7 +7,7 @@ use crate::messages::compare;
 use crate::trace::{Row, Trace};
 use iecc_diag::{Diagnostic, Diagnostics};
 use iecc_driver::run::{Probe, Probes, initial_inputs};
-use iecc_driver::{EngineKind, FrontOptions, Sources, compile};
+use iecc_driver::{EngineKind, FrontOptions, OnFault, Sources, compile};
 use iecc_ir::{FaultCode, Module, Region};
 use iecc_source::SourceMap;
 use iecc_target::{Fault, region_bytes};
@@ -103,6 +103,11 @@ fn options(case: &Case) -> FrontOptions {
     FrontOptions {
         dialect: case.dialect,
         entry: case.entry.clone(),
+        on_fault: if case.stops_at_faults {
+            OnFault::Trap
+        } else {
+            OnFault::Continue
+        },
         ..FrontOptions::default()
     }
 }

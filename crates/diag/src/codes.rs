@@ -176,6 +176,7 @@ codes! {
     E3019 Error "argument is given twice";
     E3020 Error "argument has the wrong direction";
     E3021 Error "function does not take these arguments";
+    E3022 Error "too few arguments";
     E3040 Error "recursion";
     E3041 Error "loop never ends";
     E3050 Warning "variable is not used";

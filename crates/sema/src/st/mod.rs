@@ -40,6 +40,7 @@ mod resolve;
 pub mod signature;
 mod signatures;
 mod storage;
+mod suitable;
 pub mod types;
 
 pub use constant::Const;

@@ -168,6 +168,7 @@ impl Analysis<'_> {
                 } else if constant {
                     self.fold_constant(id, &mut var);
                 }
+                self.check_instance(id, &var);
                 self.add_var(id, var);
             }
         }

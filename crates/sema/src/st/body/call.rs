@@ -584,6 +584,9 @@ impl Body<'_, '_> {
             );
             self.error(Message::E3018, range, message);
         }
+        if positional > 0 && positional == written.len() {
+            self.require_positions(pou, &parameters, positional, range);
+        }
         let mut matched: Vec<(Var, Argument)> = Vec::with_capacity(written.len());
         let mut next = 0;
         for argument in written {
@@ -623,6 +626,29 @@ impl Body<'_, '_> {
             }
         }
         matched
+    }
+
+    /// Arguments by position reach to the last input and in-out.
+    fn require_positions(
+        &mut self,
+        pou: PouId,
+        parameters: &[Var],
+        positional: usize,
+        range: TextRange,
+    ) {
+        let missing = parameters.iter().skip(positional);
+        let missing: Vec<&str> = missing
+            .filter(|var| var.section != SectionKind::Output)
+            .map(|var| self.text(var.name))
+            .collect();
+        if missing.is_empty() || self.an.options.codesys {
+            return;
+        }
+        let name = self.text(self.an.pou(pou).name);
+        let message = format!("`{name}` has no argument for `{}`", missing.join("`, `"));
+        let note = "arguments by position are complete; with names some may be left out";
+        let diagnostic = Diagnostic::new(Message::E3022, self.span(range), message).note(note);
+        self.report(diagnostic);
     }
 
     /// Whether inputs stand with `:=` and outputs with `=>`.

@@ -230,7 +230,7 @@ impl Body<'_, '_> {
             return Operand::error(range);
         }
         let right = self.bit_operand(right, right_hint, op.as_str());
-        if left.is_error() || right.is_error() {
+        if right.is_error() {
             return Operand::error(range);
         }
         let elementary = |ty| self.an.types.elementary(ty).expect("a bit string");
@@ -329,6 +329,11 @@ impl Body<'_, '_> {
 
     fn no_common_type(&mut self, op: BinaryOp, left: &Operand, right: &Operand, range: TextRange) {
         let (a, b) = (self.type_name(left.ty), self.type_name(right.ty));
+        if self.an.types.strip(left.ty) == self.an.types.strip(right.ty) {
+            let message = format!("`{}` does not take {a}", op.as_str());
+            self.error(Message::E2027, range, message);
+            return;
+        }
         let message = format!(
             "`{}` has operands of types that no type holds: {a} and {b}",
             op.as_str()
