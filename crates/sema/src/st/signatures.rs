@@ -168,7 +168,7 @@ impl Analysis<'_> {
                 } else if constant {
                     self.fold_constant(id, &mut var);
                 }
-                self.check_instance(id, &var);
+                self.check_place_of_instance(id, &var);
                 self.add_var(id, var);
             }
         }

@@ -8,7 +8,7 @@ use iecc_diag::Code;
 
 impl Analysis<'_> {
     /// Instances change and outlast a call: they are no constants, and not in functions.
-    pub(super) fn check_instance(&mut self, id: PouId, var: &Var) {
+    pub(super) fn check_place_of_instance(&mut self, id: PouId, var: &Var) {
         if !self.holds_instance(var.ty) {
             return;
         }
