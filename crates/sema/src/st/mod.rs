@@ -2,7 +2,7 @@
 //!
 //! 1. `declare` collects names: units, types, namespaces. Nothing is resolved, so order is free.
 //! 2. `resolve` and `signatures` give types to declarations, on demand; `initial` gives values.
-//! 3. `body` checks every body and writes it down as [`hir::code`](crate::hir::code).
+//! 3. `body` checks every body and writes it down as [`hir::code`].
 //! 4. `program` makes instances, tasks, inputs and outputs.
 //!
 //! Every mistake of every file is reported. What is wrong once counts as of the error type from

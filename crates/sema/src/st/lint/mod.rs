@@ -22,9 +22,9 @@ impl<'a> Analysis<'a> {
         if self.found.has_errors() || self.units.iter().any(is_broken) {
             return;
         }
-        let configured = self.names_in_configurations();
+        let (configured, extended) = (self.names_in_configurations(), self.extended());
         for index in self.first_user_unit..self.units.len() as u32 {
-            self.unused_names(UnitId(index), &configured);
+            self.unused_names(UnitId(index), &configured, &extended);
         }
         for index in 0..self.pous.len() as u32 {
             self.lint_body(PouId(index));

@@ -1,7 +1,7 @@
 //! Variables that nothing names, and instances of blocks that nothing calls.
 
 use crate::st::analysis::Analysis;
-use crate::st::signature::UnitId;
+use crate::st::signature::{PouId, UnitId};
 use crate::st::types::TypeKind;
 use iecc_ast::Symbol;
 use iecc_ast::st::{
@@ -41,7 +41,12 @@ impl Analysis<'_> {
     }
 
     /// Warns of variables of a unit and its members.
-    pub(super) fn unused_names(&mut self, id: UnitId, configured: &FxHashSet<Symbol>) {
+    pub(super) fn unused_names(
+        &mut self,
+        id: UnitId,
+        configured: &FxHashSet<Symbol>,
+        extended: &FxHashSet<PouId>,
+    ) {
         let unit = self.unit(id);
         let UnitKind::Pou(pou) = &unit.kind else {
             return;
@@ -51,8 +56,8 @@ impl Analysis<'_> {
         uses.named.extend(configured);
         uses.whole.extend(configured);
         // Derived units see the variables of what they extend, and everybody those of classes.
-        let closed =
-            matches!(pou.kind, PouKind::Function | PouKind::Program) || !self.is_extended(id);
+        let closed = matches!(pou.kind, PouKind::Function | PouKind::Program)
+            || !self.is_extended(id, extended);
         if closed {
             self.unused_in(id, pou.sections, &uses);
             self.uncalled(id, pou.sections, &uses);
@@ -70,11 +75,17 @@ impl Analysis<'_> {
         }
     }
 
-    fn is_extended(&self, unit: UnitId) -> bool {
-        let Some(&pou) = self.pou_of_unit.get(&unit) else {
-            return true;
-        };
-        self.pous.iter().any(|other| other.extends.contains(&pou))
+    fn is_extended(&self, unit: UnitId, extended: &FxHashSet<PouId>) -> bool {
+        let pou = self.pou_of_unit.get(&unit);
+        pou.is_none_or(|pou| extended.contains(pou))
+    }
+
+    /// The units that others extend.
+    pub(super) fn extended(&self) -> FxHashSet<PouId> {
+        self.pous
+            .iter()
+            .flat_map(|pou| pou.extends.iter().copied())
+            .collect()
     }
 
     fn unused_in(&mut self, unit: UnitId, sections: st::List<VarSection>, uses: &Uses) {
