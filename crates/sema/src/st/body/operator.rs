@@ -230,7 +230,7 @@ impl Body<'_, '_> {
             return Operand::error(range);
         }
         let right = self.bit_operand(right, right_hint, op.as_str());
-        if right.is_error() {
+        if left.is_error() || right.is_error() {
             return Operand::error(range);
         }
         let elementary = |ty| self.an.types.elementary(ty).expect("a bit string");
