@@ -454,7 +454,7 @@ impl Analysis<'_> {
         }
         let span = self.span(unit, self.unit(unit).arena[written].range);
         let (there, here) = (self.type_name(ty), self.type_name(here));
-        let message = format!("the variable is a {there}, not a {here}");
+        let message = format!("the variable is of type {there}, not {here}");
         self.error(Message::E6040, span, message);
         false
     }

@@ -58,6 +58,8 @@ impl Analysis<'_> {
                 let name = self.text(global.name);
                 let message = format!("constant `{name}` needs its own value");
                 self.error(Code::E2030, global.span, message);
+                // It counts as wrong from here on.
+                self.globals[id.index()].ty = TypeId::ERROR;
                 return;
             }
             State::Declared => {}
@@ -74,6 +76,7 @@ impl Analysis<'_> {
                 Some(initial) => self.constant(scope, initial.expr, ty),
                 None => Some(self.default_const(ty)),
             };
+            let value = value.filter(|_| self.global(id).ty != TypeId::ERROR);
             if value.is_none() {
                 self.globals[id.index()].ty = TypeId::ERROR;
             }
@@ -214,7 +217,7 @@ impl Analysis<'_> {
         let known = declared.ty != TypeId::ERROR && var.ty != TypeId::ERROR;
         let message = if known && self.types.strip(declared.ty) != self.types.strip(var.ty) {
             let (there, here) = (self.type_name(declared.ty), self.type_name(var.ty));
-            format!("`{name}` is a {there} where it is declared, not a {here}")
+            format!("`{name}` is of type {there} where it is declared, not {here}")
         } else if declared.constant && !var.constant {
             format!("`{name}` is a constant, so this is VAR_EXTERNAL CONSTANT")
         } else if var.constant && !declared.constant {

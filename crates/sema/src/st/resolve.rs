@@ -173,8 +173,15 @@ impl Analysis<'_> {
         match defs.first().copied() {
             Some(Def::Type(id)) => self.declared_type(id),
             Some(Def::Pou(id)) => match self.pou(id).kind {
-                st::PouKind::FunctionBlock | st::PouKind::Class | st::PouKind::Program => {
+                st::PouKind::FunctionBlock | st::PouKind::Class => {
                     self.types.intern(TypeKind::Instance(id))
+                }
+                st::PouKind::Program => {
+                    let span = self.span(scope.unit, written.range);
+                    let name = self.text(self.pou(id).name);
+                    let message = format!("`{name}` is a program: instances stand in a RESOURCE");
+                    self.error(Code::E2022, span, message);
+                    TypeId::ERROR
                 }
                 st::PouKind::Interface => self.types.intern(TypeKind::Interface(id)),
                 st::PouKind::Function => {

@@ -137,7 +137,10 @@ impl Analysis<'_> {
         self.modifiers_go_together(unit_id, section);
         for decl in &unit.arena[variables] {
             let owned = self.pou_scope(id);
-            let ty = self.variable_type(owned.as_scope(), decl);
+            let mut ty = self.variable_type(owned.as_scope(), decl);
+            if decl.edge.is_some() && !self.edge_fits(unit_id, kind, section.kind, decl, ty) {
+                ty = TypeId::ERROR;
+            }
             for ident in &unit.arena[decl.names] {
                 let initial = decl.initial.map(|expr| Initial {
                     unit: unit_id,
@@ -172,6 +175,33 @@ impl Analysis<'_> {
                 self.add_var(id, var);
             }
         }
+    }
+
+    /// Whether an input may have R_EDGE or F_EDGE.
+    fn edge_fits(
+        &mut self,
+        unit: super::signature::UnitId,
+        kind: PouKind,
+        section: SectionKind,
+        decl: &st::VarDecl,
+        ty: TypeId,
+    ) -> bool {
+        if ty == TypeId::ERROR {
+            return true;
+        }
+        let span = self.span(unit, decl.range);
+        let owner = matches!(kind, PouKind::FunctionBlock | PouKind::Program);
+        if section != SectionKind::Input || !owner {
+            let message = "R_EDGE and F_EDGE stand in VAR_INPUT of blocks and programs only";
+            self.error(Code::E1011, span, message);
+            return false;
+        }
+        if self.types.strip(ty) != TypeId::BOOL {
+            let message = format!("an edge is one of a BOOL, not of {}", self.type_name(ty));
+            self.error(Code::E2022, span, message);
+            return false;
+        }
+        true
     }
 
     fn allowed_section(
