@@ -60,7 +60,7 @@ impl Analysis<'_> {
     fn outer_sections(&mut self, unit: UnitId, sections: st::List<st::VarSection>) {
         let arena = &self.unit(unit).arena;
         for section in &arena[sections] {
-            self.modifiers_go_together(unit, section);
+            self.modifiers_go_together(unit, None, section);
             let Declarations::Variables(variables) = section.declarations else {
                 continue;
             };

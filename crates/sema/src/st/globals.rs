@@ -279,7 +279,12 @@ impl Analysis<'_> {
     }
 
     /// CONSTANT goes with neither RETAIN nor NON_RETAIN; retained is what lives on.
-    pub(crate) fn modifiers_go_together(&mut self, unit: UnitId, section: &VarSection) {
+    pub(crate) fn modifiers_go_together(
+        &mut self,
+        unit: UnitId,
+        kind: Option<PouKind>,
+        section: &VarSection,
+    ) {
         use ModifierKind as M;
         let modifiers = &self.unit(unit).arena[section.modifiers];
         let retained = modifiers
@@ -297,6 +302,9 @@ impl Analysis<'_> {
             (Some(other), _) => format!("{word} does not go with {}", other.as_str()),
             (None, SectionKind::InOut | SectionKind::Temp | SectionKind::External) => {
                 format!("{word} means nothing in {}", section.kind.as_str())
+            }
+            (None, _) if kind == Some(PouKind::Function) => {
+                format!("{word} means nothing in a function or method: nothing in it lives on")
             }
             (None, _) => return,
         };

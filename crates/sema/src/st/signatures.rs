@@ -134,7 +134,7 @@ impl Analysis<'_> {
         let Declarations::Variables(variables) = section.declarations else {
             return;
         };
-        self.modifiers_go_together(unit_id, section);
+        self.modifiers_go_together(unit_id, Some(kind), section);
         for decl in &unit.arena[variables] {
             let owned = self.pou_scope(id);
             let mut ty = self.variable_type(owned.as_scope(), decl);
