@@ -204,12 +204,14 @@ END_CONFIGURATION
 ";
     let folder = folder(&[("main.st", MAIN), ("other.st", OTHER), ("tasks.st", tasks)]);
     let run = [".", "--scans", "6", "--watch", "p1.n,p2.x"];
-    // p1 runs at 0, 20, 40 and p2 at 0, 50; the tick is 10 ms.
-    let expected = "t_ms,p1.n,p2.x\n0,1,1\n10,1,1\n20,2,1\n30,2,1\n40,3,1\n50,3,2\n";
+    // p1 runs at 0, 20, 40 and p2 at 0, 50; the tick is 10 ms. Bare names are those of p1, the
+    // instance of Main.
+    let expected = "t_ms,start,n,p1.n,p2.x\n0,0,1,1,1\n10,0,1,1,1\n20,0,2,2,1\n30,0,2,2,1\n\
+                    40,0,3,3,1\n50,0,3,3,2\n";
     assert_eq!(trace(folder.path(), &run), expected);
     let found = trace(folder.path(), &[&run[..], &["--period", "50ms"]].concat());
     assert!(
-        found.starts_with("t_ms,p1.n,p2.x\n0,1,1\n50,2,2\n100,3,3\n"),
+        found.starts_with("t_ms,start,n,p1.n,p2.x\n0,0,1,1,1\n50,0,2,2,2\n100,0,3,3,3\n"),
         "{found}"
     );
 }
