@@ -605,7 +605,8 @@ impl Body<'_, '_> {
                     let wanted = alias.unwrap_or(name.name);
                     let found = parameters.iter().find(|var| var.name == wanted);
                     if found.is_none() {
-                        self.no_parameter(pou, name, &parameters);
+                        let known = parameters.iter().map(|var| var.name);
+                        self.no_parameter(pou, name, known);
                     }
                     found
                 }
@@ -671,12 +672,16 @@ impl Body<'_, '_> {
         !wrong
     }
 
-    fn no_parameter(&mut self, pou: PouId, name: st::Ident, parameters: &[Var]) {
+    pub(super) fn no_parameter(
+        &mut self,
+        pou: PouId,
+        name: st::Ident,
+        known: impl IntoIterator<Item = Symbol>,
+    ) {
         let callee = self.text(self.an.pou(pou).name);
         let message = format!("`{callee}` has no parameter `{}`", self.text(name.name));
         let mut diagnostic = Diagnostic::new(Message::E1019, self.span(name.range), message);
-        let candidates = parameters.iter().map(|var| var.name);
-        if let Some(close) = self.an.similar(name.name, candidates) {
+        if let Some(close) = self.an.similar(name.name, known) {
             diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
         }
         self.report(diagnostic);

@@ -9,7 +9,8 @@ use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
 impl Body<'_, '_> {
-    /// A conversion of a constant by a function with this name, where the value fits.
+    /// A conversion of a constant by a function with this name. A number that does not fit is a mistake;
+    /// bits are cut.
     pub(super) fn folded_conversion(
         &mut self,
         function: &str,
@@ -23,8 +24,20 @@ impl Body<'_, '_> {
         let ty = self.an.named_elementary(target)?;
         let to = self.an.types.elementary(ty)?;
         let from = self.an.types.elementary(operand.ty)?;
-        let value = fold_conversion(operand.as_const()?, from, to, truncates)?;
-        Some(Operand::constant(value, ty, range))
+        let value = operand.as_const()?;
+        if let Some(folded) = fold_conversion(value, from, to, truncates) {
+            return Some(Operand::constant(folded, ty, range));
+        }
+        let shown = match value {
+            Const::Int(number) => number.to_string(),
+            Const::Real(number) | Const::Literal(_, number) => number.to_string(),
+            Const::Text(_) | Const::Null => return None,
+        };
+        (from.is_num() && to.is_int()).then(|| {
+            let (low, high) = to.range();
+            let message = format!("{shown} does not fit {} ({low} to {high})", to.name());
+            self.error(Message::E2005, range, message)
+        })
     }
 
     /// `convert`, `trunc`: the result type is the wanted one, which the library declares.

@@ -28,6 +28,9 @@ impl Body<'_, '_> {
                 return self.bound_call(function, bound, given, range, want);
             }
         }
+        if self.unknown_parameter(functions, &given) {
+            return Operand::error(range);
+        }
         let name = self.text(self.an.pou(functions[0]).name);
         let types: Vec<String> = given
             .operands
@@ -36,6 +39,25 @@ impl Body<'_, '_> {
             .collect();
         let message = format!("{name} does not take ({})", types.join(", "));
         self.error(Message::E3021, range, message)
+    }
+
+    /// Reports a name that no parameter of any of the functions has.
+    fn unknown_parameter(&mut self, functions: &[PouId], given: &Given) -> bool {
+        let mut known = Vec::new();
+        for &function in functions {
+            let parameters = self.an.library_parameters(function);
+            known.extend(parameters.iter().map(|parameter| parameter.name));
+        }
+        let named = given.operands.iter().filter_map(|(kind, _)| match kind {
+            ArgumentKind::Input(name) => Some(*name),
+            ArgumentKind::Positional | ArgumentKind::Output(_) | ArgumentKind::NegatedOutput(_) => {
+                None
+            }
+        });
+        let unknown = named.into_iter().find(|name| !known.contains(&name.name));
+        let Some(name) = unknown else { return false };
+        self.no_parameter(functions[0], name, known);
+        true
     }
 
     /// What the generic names of a library function stand for with these arguments; `None` if they
@@ -344,8 +366,8 @@ impl Body<'_, '_> {
         }
         if let ([(_, operand)], true) = (&mut given.operands[..], converts) {
             *operand = self.as_type(operand.clone(), source);
-            if let Some(folded) = self.folded_conversion(&function, operand, range)
-                && given.eno.is_none()
+            if given.eno.is_none()
+                && let Some(folded) = self.folded_conversion(&function, operand, range)
             {
                 return Some(folded);
             }

@@ -21,6 +21,7 @@ mod operator;
 mod place;
 mod reference;
 mod stmt;
+mod time;
 
 pub(crate) use connect::Connections;
 pub(crate) use operand::{Operand, OperandKind, Place, Rights};

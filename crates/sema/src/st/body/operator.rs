@@ -293,7 +293,7 @@ impl Body<'_, '_> {
         Operand::value(value, ty, range)
     }
 
-    fn divides_by_zero(&self, op: BinaryOp, el: El, right: &Operand) -> bool {
+    pub(super) fn divides_by_zero(&self, op: BinaryOp, el: El, right: &Operand) -> bool {
         op == BinaryOp::Divide && !el.is_real() && matches!(right.as_const(), Some(Const::Int(0)))
     }
 
@@ -327,7 +327,13 @@ impl Body<'_, '_> {
         ty
     }
 
-    fn no_common_type(&mut self, op: BinaryOp, left: &Operand, right: &Operand, range: TextRange) {
+    pub(super) fn no_common_type(
+        &mut self,
+        op: BinaryOp,
+        left: &Operand,
+        right: &Operand,
+        range: TextRange,
+    ) {
         let (a, b) = (self.type_name(left.ty), self.type_name(right.ty));
         if self.an.types.strip(left.ty) == self.an.types.strip(right.ty) {
             let message = format!("`{}` does not take {a}", op.as_str());
@@ -534,131 +540,6 @@ impl Body<'_, '_> {
         }
     }
 
-    /// Addition and the like on durations and points in time; `None` if neither operand is one.
-    fn time_arithmetic(
-        &mut self,
-        op: BinaryOp,
-        left: &Operand,
-        right: &Operand,
-        range: TextRange,
-    ) -> Option<Operand> {
-        let types = &self.an.types;
-        let (a, b) = (types.elementary(left.ty), types.elementary(right.ty));
-        let is_time = |el: Option<El>| el.is_some_and(|el| el.is_duration() || el.is_date());
-        if !is_time(a) && !is_time(b) {
-            return None;
-        }
-        let result = time_result(op, a, b);
-        let Some((result, wrap_day)) = result else {
-            let scaled = match op {
-                BinaryOp::Multiply if is_time(a) => Some((left, right)),
-                BinaryOp::Multiply => Some((right, left)),
-                BinaryOp::Divide => Some((left, right)),
-                _ => None,
-            };
-            if let Some((time, factor)) = scaled
-                && self
-                    .an
-                    .types
-                    .elementary(time.ty)
-                    .is_some_and(El::is_duration)
-            {
-                return Some(self.scale_time(op, time, factor, range));
-            }
-            self.no_common_type(op, left, right, range);
-            return Some(Operand::error(range));
-        };
-        let ty = TypeId::of(result);
-        if let (Some(Const::Int(a)), Some(Const::Int(b))) = (left.as_const(), right.as_const()) {
-            let value = fold_int(op, *a, *b).expect("sums fit");
-            let day = 86_400_000_000_000;
-            let value = if wrap_day {
-                value.rem_euclid(day)
-            } else {
-                value
-            };
-            return Some(self.folded(Const::Int(value), ty, range));
-        }
-        let hir_op = if op == BinaryOp::Add {
-            Op::Add
-        } else {
-            Op::Subtract
-        };
-        let storage = result.storage();
-        let (a, b) = (self.raw(left), self.raw(right));
-        let mut value = self.add_expr(ExprKind::Binary(hir_op, a, b), storage, range);
-        if wrap_day {
-            value = self.wrap_day(value, range);
-        }
-        Some(Operand::value(value, ty, range))
-    }
-
-    /// A time of day brought back between midnight and midnight.
-    fn wrap_day(&mut self, value: ExprId, range: TextRange) -> ExprId {
-        let storage = El::Tod.storage();
-        let day = self.add_const(86_400_000_000_000, storage, range);
-        let rest = self.add_expr(ExprKind::Binary(Op::Modulo, value, day), storage, range);
-        let sum = self.add_expr(ExprKind::Binary(Op::Add, rest, day), storage, range);
-        self.add_expr(ExprKind::Binary(Op::Modulo, sum, day), storage, range)
-    }
-
-    /// A duration times or divided by a number.
-    fn scale_time(
-        &mut self,
-        op: BinaryOp,
-        time: &Operand,
-        factor: &Operand,
-        range: TextRange,
-    ) -> Operand {
-        let el = self.an.types.elementary(time.ty).expect("a duration");
-        let factor_el = match self.an.types.elementary(factor.ty) {
-            Some(el) if el.is_num() => el,
-            None if factor.ty == TypeId::UNTYPED_INT => El::Lint,
-            None if factor.ty == TypeId::UNTYPED_REAL => El::Lreal,
-            Some(_) | None => {
-                self.no_common_type(op, time, factor, range);
-                return Operand::error(range);
-            }
-        };
-        let storage = el.storage();
-        let ty = TypeId::of(el);
-        if factor_el.is_real() {
-            let real = El::Lreal;
-            let wide = self.raw(time);
-            let wide = self.convert_value(wide, real, range);
-            let factor = self.as_scalar(factor, TypeId::of(factor_el));
-            let factor = self.convert_value(factor, real, range);
-            let hir_op = if op == BinaryOp::Multiply {
-                Op::Multiply
-            } else {
-                Op::DivideUnchecked
-            };
-            let kind = ExprKind::Binary(hir_op, wide, factor);
-            let value = self.add_expr(kind, real.storage(), range);
-            let value = self.convert_value(value, el, range);
-            return Operand::value(value, ty, range);
-        }
-        if self.divides_by_zero(op, factor_el, factor) {
-            return self.error(Message::E2028, factor.range, "division by zero");
-        }
-        if let (Some(Const::Int(a)), Some(Const::Int(b))) = (time.as_const(), factor.as_const()) {
-            let value = fold_int(op, *a, *b).expect("the divisor is not 0");
-            return self.folded(Const::Int(value), ty, range);
-        }
-        let constant = factor.as_const().is_some();
-        let factor = self.as_scalar(factor, TypeId::of(factor_el));
-        let factor = self.convert_value(factor, el, range);
-        let time_value = self.raw(time);
-        let hir_op = match op {
-            BinaryOp::Multiply => Op::Multiply,
-            _ if constant => Op::DivideUnchecked,
-            _ => Op::Divide,
-        };
-        let kind = ExprKind::Binary(hir_op, time_value, factor);
-        let value = self.add_expr(kind, storage, range);
-        Operand::value(value, ty, range)
-    }
-
     /// A number by value in another storage.
     pub(super) fn convert_value(&mut self, value: ExprId, to: El, range: TextRange) -> ExprId {
         if self.code.expr(value).ty == to.storage() {
@@ -676,6 +557,15 @@ impl Body<'_, '_> {
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
+        for operand in [&left, &right] {
+            let untyped = matches!(operand.ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL);
+            let number = self.an.types.elementary(operand.ty).is_some_and(El::is_num);
+            if !untyped && !number {
+                let name = self.type_name(operand.ty);
+                let message = format!("`**` takes numbers, not {name}");
+                return self.error(Message::E2027, operand.range, message);
+            }
+        }
         self.library_call("EXPT", vec![left, right], range, want)
     }
 
@@ -717,44 +607,6 @@ fn is_comparison(op: BinaryOp) -> bool {
     )
 }
 
-/// What comes out of a sum or difference of times, and whether it stays within a day.
-fn time_result(op: BinaryOp, a: Option<El>, b: Option<El>) -> Option<(El, bool)> {
-    let (a, b) = (a?, b?);
-    let long = a.is_long_time();
-    // Short and long families do not mix, but a long operand may have a short duration beside it.
-    if long != b.is_long_time() && !(b == El::Time || a == El::Time) {
-        return None;
-    }
-    let duration = if long || (b.is_long_time() && a.is_duration()) {
-        El::Ltime
-    } else {
-        El::Time
-    };
-    match (op, a.family(), b.family()) {
-        (BinaryOp::Add | BinaryOp::Subtract, Family::Duration, Family::Duration) => {
-            Some((duration, false))
-        }
-        (BinaryOp::Add | BinaryOp::Subtract, Family::TimeOfDay, Family::Duration)
-            if long || b == El::Time =>
-        {
-            Some((a, true))
-        }
-        (BinaryOp::Add | BinaryOp::Subtract, Family::DateTime, Family::Duration)
-            if long || b == El::Time =>
-        {
-            Some((a, false))
-        }
-        (BinaryOp::Subtract, Family::Date, Family::Date)
-        | (BinaryOp::Subtract, Family::TimeOfDay, Family::TimeOfDay)
-        | (BinaryOp::Subtract, Family::DateTime, Family::DateTime)
-            if a == b =>
-        {
-            Some((duration, false))
-        }
-        _ => None,
-    }
-}
-
 fn as_real(value: &Const) -> f64 {
     match value {
         Const::Int(number) => *number as f64,
@@ -772,7 +624,7 @@ fn fold_real(op: BinaryOp, a: f64, b: f64) -> f64 {
     }
 }
 
-fn fold_int(op: BinaryOp, a: i128, b: i128) -> Option<i128> {
+pub(super) fn fold_int(op: BinaryOp, a: i128, b: i128) -> Option<i128> {
     match op {
         BinaryOp::Add => a.checked_add(b),
         BinaryOp::Subtract => a.checked_sub(b),
