@@ -118,5 +118,15 @@ mod tests {
         for row in parameters() {
             assert!(!row.choice.is_empty(), "{}", row.item);
         }
+        let errors = errors()
+            .iter()
+            .flat_map(|row| [&row.condition, &row.treatment]);
+        let parameters = parameters().iter().flat_map(|row| [&row.item, &row.choice]);
+        let extensions = extensions()
+            .iter()
+            .flat_map(|row| [&row.extension, &row.switch]);
+        for text in errors.chain(parameters).chain(extensions) {
+            assert!(!text.contains('|'), "a cell of Markdown: {text}");
+        }
     }
 }
