@@ -265,6 +265,8 @@ codes! {
     E7008 Error "option does not fit the program, the target or the board";
     E7009 Error "simulator cannot be started";
     E7010 Error "target cannot express a reference";
+    // 8 dialect policy
+    E8001 Error "form belongs to another dialect";
 }
 
 impl Code {

@@ -24,6 +24,7 @@ mod body;
 mod config;
 pub mod constant;
 mod declare;
+mod dialect;
 mod dispatch;
 pub mod elementary;
 mod globals;
@@ -99,6 +100,7 @@ pub fn analyze(
     for file in files {
         analysis.declare_file(file, NamespaceId::GLOBAL);
     }
+    analysis.check_dialect();
     analysis.index_units();
     analysis.resolve_usings();
     analysis.resolve_heritage();
