@@ -2,7 +2,7 @@
 
 use super::analysis::Analysis;
 use super::signature::{Part, PouId, Storage, Var};
-use super::types::{TypeId, TypeKind};
+use super::types::TypeId;
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, Member, ModifierKind, PouKind, SectionKind, UnitKind};
 use iecc_diag::{Code, Diagnostic};
@@ -469,30 +469,11 @@ impl Analysis<'_> {
         var.ty
     }
 
-    /// The abstract class or block that a type holds an instance of, if any. Recursion is bounded by the
-    /// nesting of types.
+    /// The abstract class or block that a type holds an instance of, if any.
     fn abstract_inside(&self, ty: TypeId) -> Option<PouId> {
-        match self.types.base(ty) {
-            TypeKind::Instance(pou) => self.is(*pou, ModifierKind::Abstract).then_some(*pou),
-            TypeKind::Array { element, .. } => self.abstract_inside(*element),
-            TypeKind::Struct(index) => {
-                let members = &self.types.structs[*index as usize].members;
-                members.iter().find_map(|m| self.abstract_inside(m.ty))
-            }
-            TypeKind::Error
-            | TypeKind::Nothing
-            | TypeKind::UntypedInt
-            | TypeKind::UntypedReal
-            | TypeKind::Null
-            | TypeKind::Elementary(_)
-            | TypeKind::Text { .. }
-            | TypeKind::Enum(_)
-            | TypeKind::Subrange { .. }
-            | TypeKind::OpenArray { .. }
-            | TypeKind::Interface(_)
-            | TypeKind::Reference(..)
-            | TypeKind::Alias(_) => None,
-        }
+        self.instance_inside(ty, &|pou| {
+            self.is(pou, ModifierKind::Abstract).then_some(pou)
+        })
     }
 }
 

@@ -155,22 +155,31 @@ impl Analysis<'_> {
         }
     }
 
-    /// The class or block with a type number that a type holds an instance of, if any. Recursion is
-    /// bounded by the nesting of types.
+    /// The class or block with a type number that a type holds an instance of, if any.
     pub(crate) fn numbered_inside(&self, ty: TypeId) -> Option<PouId> {
+        self.instance_inside(ty, &|pou| {
+            let own = self.is_numbered(pou).then_some(pou);
+            own.or_else(|| {
+                let vars = self.pou(pou).vars.iter();
+                vars.filter(|var| matches!(var.storage, Storage::Field(_)))
+                    .find_map(|var| self.numbered_inside(var.ty))
+            })
+        })
+    }
+
+    /// The first answer about an instance that a type holds, also in arrays and structures. Recursion
+    /// is bounded by the nesting of types.
+    pub(crate) fn instance_inside(
+        &self,
+        ty: TypeId,
+        ask: &dyn Fn(PouId) -> Option<PouId>,
+    ) -> Option<PouId> {
         match self.types.base(ty) {
-            TypeKind::Instance(pou) => {
-                let own = self.is_numbered(*pou).then_some(*pou);
-                own.or_else(|| {
-                    let vars = self.pou(*pou).vars.iter();
-                    vars.filter(|var| matches!(var.storage, Storage::Field(_)))
-                        .find_map(|var| self.numbered_inside(var.ty))
-                })
-            }
-            TypeKind::Array { element, .. } => self.numbered_inside(*element),
+            TypeKind::Instance(pou) => ask(*pou),
+            TypeKind::Array { element, .. } => self.instance_inside(*element, ask),
             TypeKind::Struct(index) => {
                 let members = &self.types.structs[*index as usize].members;
-                members.iter().find_map(|m| self.numbered_inside(m.ty))
+                members.iter().find_map(|m| self.instance_inside(m.ty, ask))
             }
             TypeKind::Error
             | TypeKind::Nothing

@@ -11,17 +11,17 @@ use iecc_diag::{Code as Message, Diagnostic, closest};
 impl Analysis<'_> {
     /// Makes the tasks and instances; a message if there is nothing to run.
     pub(crate) fn assemble(&mut self) {
-        let configuration =
-            self.units
-                .iter()
-                .enumerate()
-                .find_map(|(index, unit)| match &unit.unit.kind {
-                    UnitKind::Configuration(configuration) => {
-                        Some((UnitId(index as u32), configuration))
-                    }
-                    _ => None,
-                });
-        match configuration {
+        let units = (0..).map(UnitId).zip(&self.units);
+        let mut configurations = units.filter_map(|(id, unit)| match &unit.unit.kind {
+            UnitKind::Configuration(configuration) => Some((id, &**configuration)),
+            _ => None,
+        });
+        let first = configurations.next();
+        let others: Vec<_> = configurations.collect();
+        for (unit, other) in others {
+            self.unsupported(unit, other.name.range, "a second CONFIGURATION");
+        }
+        match first {
             Some((unit, configuration)) => {
                 self.no_entry();
                 self.configuration(unit, configuration);

@@ -4,12 +4,12 @@ use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir;
 use crate::hir::code::{Call, ExprKind, PathId, PathStep, Root, StmtKind};
 use crate::st::analysis::Analysis;
+use crate::st::resolve::TypeScope;
 use crate::st::signature::{PouId, Storage, UnitId, Var};
 use crate::st::types::TypeId;
 use iecc_ast::st::{self, ProgramElement, SectionKind};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
-use std::collections::HashSet;
 
 /// What a program instance is connected to.
 #[derive(Debug, Clone)]
@@ -82,22 +82,13 @@ impl<'b, 'a> Body<'b, 'a> {
     /// Surroundings of code that stands in a configuration.
     fn outside(an: &'b mut Analysis<'a>, unit: UnitId) -> Self {
         let namespace = an.units[unit.index()].namespace;
-        Self {
-            an,
+        let scope = TypeScope {
             unit,
             namespace,
-            pou: None,
             bindings: None,
-            code: crate::hir::code::Code::default(),
-            locals: Vec::new(),
-            result: None,
-            result_ref: None,
-            eno: None,
-            loops: Vec::new(),
-            pending: Vec::new(),
-            skips: HashSet::new(),
-            constant_only: false,
-        }
+            pou: None,
+        };
+        Self::new(an, scope)
     }
 
     fn call_unit(

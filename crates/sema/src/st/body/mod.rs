@@ -71,6 +71,14 @@ impl<'b, 'a> Body<'b, 'a> {
     /// The surroundings of a constant expression.
     pub(crate) fn for_constant(an: &'b mut Analysis<'a>, scope: TypeScope<'b>) -> Self {
         Self {
+            constant_only: true,
+            ..Self::new(an, scope)
+        }
+    }
+
+    /// A body without statements.
+    fn new(an: &'b mut Analysis<'a>, scope: TypeScope<'b>) -> Self {
+        Self {
             an,
             unit: scope.unit,
             namespace: scope.namespace,
@@ -84,7 +92,7 @@ impl<'b, 'a> Body<'b, 'a> {
             loops: Vec::new(),
             pending: Vec::new(),
             skips: HashSet::new(),
-            constant_only: true,
+            constant_only: false,
         }
     }
 
@@ -182,24 +190,8 @@ impl<'b, 'a> Body<'b, 'a> {
 impl Analysis<'_> {
     /// Checks the body of a unit, whose signature is complete, and writes its code.
     pub(crate) fn body(&mut self, id: PouId) -> Code {
-        let pou = self.pou(id);
-        let (unit, namespace, bindings) = (pou.unit, pou.namespace, pou.bindings.clone());
-        let mut body = Body {
-            an: self,
-            unit,
-            namespace,
-            pou: Some(id),
-            bindings: Some(&bindings),
-            code: Code::default(),
-            locals: Vec::new(),
-            result: None,
-            result_ref: None,
-            eno: None,
-            loops: Vec::new(),
-            pending: Vec::new(),
-            skips: HashSet::new(),
-            constant_only: false,
-        };
+        let scope = self.pou_scope(id);
+        let mut body = Body::new(self, scope.as_scope());
         body.interface(id);
         body.statements_of(id);
         body.code
