@@ -1,11 +1,10 @@
 //! The standard library: what timers, counters and the like do, as program text.
 //!
-//! Library code is ordinary code to every pass and back end. [`IEC`] is written in Structured Text,
-//! in the dialect of the library: `ANY_…` names stand for one type per call, a STRING without a length takes
+//! Library code is ordinary code to every pass and back end. It is written in Structured Text, in the
+//! dialect of the library: `ANY_…` names stand for one type per call, a STRING without a length takes
 //! any length, a name may have several functions of which the first that takes the arguments counts,
-//! and a function with the pragma `intrinsic` is an operation of the compiler. [`ROCKWELL`] is written
-//! in the text form of the IR for now; a module there is linked function by function into the programs
-//! that use it.
+//! and a function with the pragma `intrinsic` is an operation of the compiler. [`IEC`] is for programs
+//! in Structured Text, [`ROCKWELL`] for those in ladder.
 
 /// A file of the library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,14 +21,9 @@ macro_rules! files {
     };
 }
 
-/// The instructions of Rockwell ladder that are library code.
+/// The timers and counters of Rockwell ladder, and what of the rest of the library they use.
 pub const ROCKWELL: &[File] = files! {
-    "rockwell/timers.ir"
-    "rockwell/counters.ir"
-};
-
-/// The same in Structured Text. Not in use yet.
-pub const ROCKWELL_TEXT: &[File] = files! {
+    "iec/selection.st"
     "rockwell/timers.st"
     "rockwell/counters.st"
 };

@@ -267,7 +267,8 @@ fn structure(ty: &str, members: &[(&str, &str)]) -> String {
 pub fn compile_xml(xml: &str, options: &FrontOptions) -> (Result<Module, String>, Vec<Code>) {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let file = map.add("bench.L5X", xml);
-    let module = compile(&map, &Sources::logix(file), options, &mut diagnostics);
+    let sources = Sources::logix(&mut map, file);
+    let module = compile(&map, &sources, options, &mut diagnostics);
     let codes = diagnostics
         .iter()
         .map(|diagnostic| diagnostic.code)

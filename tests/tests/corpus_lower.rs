@@ -31,7 +31,8 @@ fn outcome(file: &CorpusFile) -> Result<usize, (Diagnostic, String)> {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let id = load(&mut map, &file.path, &mut diagnostics).expect("the corpus is readable");
     let options = FrontOptions::default();
-    match compile(&map, &Sources::logix(id), &options, &mut diagnostics) {
+    let sources = Sources::logix(&mut map, id);
+    match compile(&map, &sources, &options, &mut diagnostics) {
         Some(module) => Ok(module.funcs.len()),
         None => {
             let errors = diagnostics.iter();

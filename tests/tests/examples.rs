@@ -87,7 +87,8 @@ fn build_ald(folder: &Path) {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
     let mut load = |path| load(&mut map, &example(path), &mut diagnostics).expect("it is there");
     let (file, csv) = (load("ald/ald.L5X"), load("ald/stimulus.csv"));
-    let (sources, options) = (Sources::logix(file), FrontOptions::default());
+    let sources = Sources::logix(&mut map, file);
+    let options = FrontOptions::default();
     let module = compile(&map, &sources, &options, &mut diagnostics);
     let stimulus = Stimulus::parse(csv, map.file(csv).text(), &mut diagnostics);
     let request = VerilogRequest {

@@ -5,7 +5,7 @@ use iecc_ast::st::{Unit, UnitKind};
 use iecc_diag::Diagnostics;
 use iecc_grammar::st::{Dialect, parse_file};
 use iecc_source::FileId;
-use iecc_stdlib::{File, IEC, ROCKWELL_TEXT};
+use iecc_stdlib::{File, IEC, ROCKWELL};
 
 fn units(file: &File) -> Vec<Unit> {
     let mut found = Diagnostics::new();
@@ -30,7 +30,7 @@ fn every_file_parses_without_a_message() {
 
 #[test]
 fn every_file_and_every_function_says_what_it_is_for() {
-    for file in IEC.iter().chain(ROCKWELL_TEXT) {
+    for file in IEC.iter().chain(ROCKWELL) {
         assert!(file.text.starts_with("(* "), "{}", file.path);
         assert!(file.text.ends_with("\n"), "{}", file.path);
         let lines = file.text.lines().count();

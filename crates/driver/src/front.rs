@@ -140,7 +140,11 @@ fn check_logix(
         init: options.init,
         edits: options.edits,
     };
-    Some(logix::analyze(&project, &options, found))
+    let mut names = Names::new();
+    let library = library(map, sources, &mut names);
+    st::intern_words(&mut names);
+    let library = st::library(&library, &names, &logix::library_functions());
+    Some(logix::analyze(&project, library, &options, found))
 }
 
 fn check_text(

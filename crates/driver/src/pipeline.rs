@@ -31,9 +31,9 @@ impl Pipeline {
         run_passes(module, self.passes(), settings);
     }
 
-    /// Runs some of its passes.
+    /// Runs some of the passes that a module goes through.
     pub(crate) fn run_part(self, module: &mut Module, part: Range<usize>, settings: &Settings) {
-        run_passes(module, &self.passes()[part], settings);
+        run_passes(module, &self.whole()[part], settings);
     }
 
     /// All passes a module goes through on the way to an engine or target.
@@ -116,4 +116,31 @@ pub fn list_passes() -> String {
     let width = PASSES.iter().map(|pass| pass.name.len()).max().unwrap_or(0);
     let line = |pass: &iecc_passes::Pass| format!("{:width$}  {}\n", pass.name, pass.what);
     PASSES.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{After, Pipeline, show};
+    use iecc_ir::parse_module;
+
+    #[test]
+    fn a_module_is_shown_after_all_passes_and_after_each() {
+        let text = "module m\nscan @scan\n\nfn @scan[]() -> () {\nb0:\n  return\n}\n";
+        let module = parse_module(text).expect("it is well-formed");
+        for pipeline in [
+            Pipeline::Hardware,
+            Pipeline::HardwareSpeed,
+            Pipeline::Software,
+        ] {
+            let whole = show(module.clone(), Some(pipeline), None).expect("the pipeline ends");
+            let (pass, run) = {
+                let passes = pipeline.whole();
+                let last = *passes.last().expect("there are passes");
+                let runs = passes.iter().filter(|pass| **pass == last).count();
+                (last.to_owned(), runs)
+            };
+            let after = show(module.clone(), Some(pipeline), Some(&After { pass, run }));
+            assert_eq!(after.as_deref(), Ok(whole.as_str()), "{pipeline:?}");
+        }
+    }
 }

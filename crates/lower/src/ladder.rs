@@ -10,8 +10,8 @@ use iecc_ir::{
     BinaryOp, FaultCode, FuncId, Function, FunctionBuilder, Place, Type, UnaryOp, Value,
 };
 use iecc_sema::hir::{
-    self, Action, Arithmetic, CoilKind, CompareOp, Computation, Condition, CounterKind, Element,
-    Elementary, Instruction, Op, Operand, Pou, ResetKind, Rung, TimerKind, Unary,
+    self, Action, Arithmetic, CoilKind, CompareOp, Computation, Condition, Element, Elementary,
+    Instruction, Op, Operand, Pou, Rung, TimerKind, Unary,
 };
 
 /// The function of a routine. Its parameters are the values that a call passes; its results, if it
@@ -124,10 +124,10 @@ impl Unit<'_, '_> {
             } => self.edge(condition, storage, output, *falling),
             Action::Timer { kind, timer } => self.timer(condition, *kind, timer),
             Action::Counter { kind, counter } => {
-                self.library(counter_name(*kind), counter, condition);
+                self.library(kind.function(), counter, condition);
             }
             Action::Reset { kind, structure } => {
-                self.library(reset_name(*kind), structure, condition);
+                self.library(kind.function(), structure, condition);
             }
             Action::Compute(computation) => self.when(condition, |unit| unit.compute(computation)),
             Action::Call {
@@ -215,7 +215,7 @@ impl Unit<'_, '_> {
 
     fn timer(&mut self, condition: Value, kind: TimerKind, timer: &hir::Place) {
         let unit_ns = self.lowering.timer_unit_ns(timer);
-        let func = self.lowering.library(timer_name(kind), unit_ns);
+        let func = self.lowering.library(kind.function(), unit_ns);
         self.call_library(func, timer, condition);
     }
 
@@ -424,31 +424,6 @@ impl Unit<'_, '_> {
             });
         }
         self.builder.ret(returned);
-    }
-}
-
-/// The library function of a timer instruction.
-pub(crate) fn timer_name(kind: TimerKind) -> &'static str {
-    match kind {
-        TimerKind::OnDelay => "TON",
-        TimerKind::OffDelay => "TOF",
-        TimerKind::Retentive => "RTO",
-    }
-}
-
-/// The library function of a counter instruction.
-pub(crate) fn counter_name(kind: CounterKind) -> &'static str {
-    match kind {
-        CounterKind::Up => "CTU",
-        CounterKind::Down => "CTD",
-    }
-}
-
-fn reset_name(kind: ResetKind) -> &'static str {
-    match kind {
-        ResetKind::Timer => "RES.TIMER",
-        ResetKind::Counter => "RES.COUNTER",
-        ResetKind::Control => "RES.CONTROL",
     }
 }
 

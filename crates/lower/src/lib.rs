@@ -5,7 +5,7 @@
 //!   because its result cannot matter.
 //! * The state mirrors the tags, I/O words included. The scan function copies inputs into these
 //!   words, calls the main routines in order, and copies the words to the outputs.
-//! * Timers and counters are library functions in the text form of the IR, linked here.
+//! * Timers and counters are library functions, linked here.
 //! * Bodies in text become one function each, by the name of the unit; their errors are tested for
 //!   under the policy of [`OnFault`].
 //! * Tasks run in one scan function, see [`tasks`].
@@ -87,7 +87,7 @@ pub fn lower(program: &hir::Program, options: &Options) -> Module {
         status,
         funcs: PrimaryMap::new(),
         origins: PrimaryMap::new(),
-        library: Library::new(),
+        library: Library::new(program),
         types,
     };
     lowering.declare_units();

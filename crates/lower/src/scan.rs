@@ -1,6 +1,6 @@
 //! The functions of the whole program: `scan`, one activation of the task, and `prescan`.
 
-use crate::ladder::{copy, counter_name, timer_name};
+use crate::ladder::copy;
 use crate::tasks::{self, TaskState};
 use crate::types::{place, result_types, scalar};
 use crate::{Lowering, MILLISECOND_NS};
@@ -112,13 +112,11 @@ fn effects(
                 builder.store(place(target), bit);
             }
             Prescan::Timer(kind) => {
-                let name = format!("{}.prescan", timer_name(*kind));
-                let func = lowering.library(&name, MILLISECOND_NS);
+                let func = lowering.library(kind.prescan_function(), MILLISECOND_NS);
                 builder.call(func, vec![place(target)], Vec::new(), &[]);
             }
             Prescan::Counter(kind) => {
-                let name = format!("{}.prescan", counter_name(*kind));
-                let func = lowering.library(&name, MILLISECOND_NS);
+                let func = lowering.library(kind.prescan_function(), MILLISECOND_NS);
                 builder.call(func, vec![place(target)], Vec::new(), &[]);
             }
         }

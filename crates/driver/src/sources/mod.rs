@@ -30,20 +30,26 @@ pub struct Sources {
 
 impl Sources {
     /// A Logix export.
-    pub fn logix(file: FileId) -> Self {
-        Self {
-            language: Language::Logix,
-            files: vec![file],
-            library: Vec::new(),
-        }
+    pub fn logix(map: &mut SourceMap, file: FileId) -> Self {
+        Self::with_library(map, Language::Logix, vec![file], iecc_stdlib::ROCKWELL)
     }
 
-    /// Files of Structured Text, and the library, whose texts follow them in the map.
+    /// Files of Structured Text.
     pub fn text(map: &mut SourceMap, files: Vec<FileId>) -> Self {
-        let library = iecc_stdlib::IEC.iter();
+        Self::with_library(map, Language::StructuredText, files, iecc_stdlib::IEC)
+    }
+
+    /// The texts of the library follow the others in the map.
+    fn with_library(
+        map: &mut SourceMap,
+        language: Language,
+        files: Vec<FileId>,
+        library: &[iecc_stdlib::File],
+    ) -> Self {
+        let library = library.iter();
         let library = library.map(|file| map.add(file.path, file.text)).collect();
         Self {
-            language: Language::StructuredText,
+            language,
             files,
             library,
         }
@@ -219,7 +225,7 @@ impl Chosen {
             .collect();
         let files: Vec<FileId> = files.into_iter().collect::<Option<_>>()?;
         Some(match language {
-            Language::Logix => Sources::logix(files[0]),
+            Language::Logix => Sources::logix(map, files[0]),
             Language::StructuredText => Sources::text(map, files),
         })
     }

@@ -2,6 +2,7 @@
 
 use super::Unit;
 use super::convert::{convert, resize};
+use crate::MILLISECOND_NS;
 use crate::types::{result_types, scalar};
 use crate::values;
 use iecc_ir::{
@@ -55,6 +56,10 @@ impl<'p> Unit<'_, 'p> {
                 let place = self.memory(*path);
                 self.builder.elapsed(place, 1, Type::I64)
             }
+            ExprKind::ElapsedUnits(path) => {
+                let place = self.memory(*path);
+                self.builder.elapsed(place, MILLISECOND_NS, Type::I32)
+            }
         }
     }
 
@@ -82,7 +87,8 @@ impl<'p> Unit<'_, 'p> {
             | ExprKind::Within { .. }
             | ExprKind::Address(_)
             | ExprKind::Now
-            | ExprKind::Elapsed(_) => {
+            | ExprKind::Elapsed(_)
+            | ExprKind::ElapsedUnits(_) => {
                 self.expr(id);
             }
         }

@@ -123,7 +123,10 @@ impl<'p> Unit<'_, 'p> {
             call.refs.iter().copied().for_each(&mut refer);
         }
         for expr in &self.code.exprs {
-            if let ExprKind::Elapsed(path) | ExprKind::Address(path) = expr.kind {
+            if let ExprKind::Elapsed(path)
+            | ExprKind::ElapsedUnits(path)
+            | ExprKind::Address(path) = expr.kind
+            {
                 refer(path);
             }
         }

@@ -137,6 +137,9 @@ pub enum ExprKind {
     Now,
     /// Nanoseconds since the `LINT` at the place was renewed, and renews it; a `LINT`.
     Elapsed(PathId),
+    /// How many units of time began since the `LINT` at the place was renewed, and renews it; a `DINT`.
+    /// The unit is 1 ms, or what the user says that a timer of ladder counts.
+    ElapsedUnits(PathId),
 }
 
 /// Operations with one operand.

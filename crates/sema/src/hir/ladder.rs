@@ -121,6 +121,29 @@ pub enum TimerKind {
     Retentive,
 }
 
+impl TimerKind {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::OnDelay, Self::OffDelay, Self::Retentive];
+
+    /// The function of the library.
+    pub fn function(self) -> &'static str {
+        match self {
+            Self::OnDelay => "TON",
+            Self::OffDelay => "TOF",
+            Self::Retentive => "RTO",
+        }
+    }
+
+    /// What prescan does, in the library.
+    pub fn prescan_function(self) -> &'static str {
+        match self {
+            Self::OnDelay => "TON_PRESCAN",
+            Self::OffDelay => "TOF_PRESCAN",
+            Self::Retentive => "RTO_PRESCAN",
+        }
+    }
+}
+
 /// The counter instructions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CounterKind {
@@ -128,6 +151,27 @@ pub enum CounterKind {
     Up,
     /// CTD
     Down,
+}
+
+impl CounterKind {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Up, Self::Down];
+
+    /// The function of the library.
+    pub fn function(self) -> &'static str {
+        match self {
+            Self::Up => "CTU",
+            Self::Down => "CTD",
+        }
+    }
+
+    /// What prescan does, in the library.
+    pub fn prescan_function(self) -> &'static str {
+        match self {
+            Self::Up => "CTU_PRESCAN",
+            Self::Down => "CTD_PRESCAN",
+        }
+    }
 }
 
 /// Comparisons of two numbers.
@@ -307,6 +351,20 @@ pub enum ResetKind {
     Counter,
     /// A CONTROL.
     Control,
+}
+
+impl ResetKind {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Timer, Self::Counter, Self::Control];
+
+    /// The function of the library.
+    pub fn function(self) -> &'static str {
+        match self {
+            Self::Timer => "RES_TIMER",
+            Self::Counter => "RES_COUNTER",
+            Self::Control => "RES_CONTROL",
+        }
+    }
 }
 
 /// Computations with a destination.

@@ -151,6 +151,9 @@ pub struct Program {
     pub names: Vec<(String, Place)>,
     /// Units that can run.
     pub pous: Vec<Pou>,
+    /// The functions that instructions of ladder stand for, by name, and what these call. They work
+    /// on structures that have the names and members of this program's.
+    pub library: Option<Box<Program>>,
     /// Initial values.
     pub inits: Inits,
     /// What runs, in order of declaration; at least one.
@@ -170,6 +173,7 @@ impl Program {
             outputs: Vec::new(),
             names: Vec::new(),
             pous: Vec::new(),
+            library: None,
             inits: Inits::default(),
             tasks: Vec::new(),
             first_scan: None,

@@ -23,7 +23,12 @@ const MAX_NAME: usize = 40;
 
 impl Analysis<'_> {
     /// The typed program, when every routine is checked.
-    pub(crate) fn finish(&mut self, schedule: &Schedule, pous: Vec<Pou>) -> Program {
+    pub(crate) fn finish(
+        &mut self,
+        schedule: &Schedule,
+        pous: Vec<Pou>,
+        library: Program,
+    ) -> Program {
         self.resolve_idle_aliases();
         let points = self.points(&pous);
         let names = self.point_names(&points);
@@ -57,6 +62,7 @@ impl Analysis<'_> {
             outputs,
             names,
             pous,
+            library: Some(Box::new(library)),
         }
     }
 

@@ -20,7 +20,7 @@ mod tasks;
 mod types;
 mod words;
 
-use crate::hir;
+use crate::hir::{self, CounterKind, ResetKind, TimerKind};
 use iecc_ast::logix::Project;
 use iecc_diag::{Diagnostic, Diagnostics};
 use std::collections::{BTreeMap, BTreeSet};
@@ -58,9 +58,21 @@ pub struct Options {
     pub edits: Edits,
 }
 
-/// Decides what a project means. The result may be lowered if no error was reported.
+/// The functions of the library that instructions stand for.
+pub fn library_functions() -> Vec<&'static str> {
+    let timers = TimerKind::ALL.into_iter();
+    let timers = timers.flat_map(|kind| [kind.function(), kind.prescan_function()]);
+    let counters = CounterKind::ALL.into_iter();
+    let counters = counters.flat_map(|kind| [kind.function(), kind.prescan_function()]);
+    let resets = ResetKind::ALL.into_iter().map(ResetKind::function);
+    timers.chain(counters).chain(resets).collect()
+}
+
+/// Decides what a project means. `library` has the functions that instructions stand for, see
+/// [`library_functions`]. The result may be lowered if no error was reported.
 pub fn analyze(
     project: &Project,
+    library: hir::Program,
     options: &Options,
     diagnostics: &mut Diagnostics,
 ) -> hir::Program {
@@ -83,7 +95,7 @@ pub fn analyze(
     analysis.declare();
     let schedule = analysis.schedule();
     let pous = analysis.check_routines(&schedule);
-    let program = analysis.finish(&schedule, pous);
+    let program = analysis.finish(&schedule, pous, library);
     let incomplete = analysis.incomplete;
     diagnostics.append(analysis.diagnostics);
     assert!(

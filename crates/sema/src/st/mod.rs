@@ -111,6 +111,26 @@ pub fn analyze(
     program.0
 }
 
+/// The functions of a library with some names, and what these call.
+pub fn library(files: &[File], names: &Names, functions: &[&str]) -> hir::Program {
+    let mut analysis = Analysis::new(names, Options::default());
+    for file in files {
+        analysis.declare_file(file, NamespaceId::LIBRARY);
+    }
+    analysis.first_user_unit = analysis.units.len() as u32;
+    analysis.index_units();
+    for function in functions {
+        for id in analysis.library_functions(function) {
+            analysis.want(id);
+        }
+    }
+    let (program, found) = analysis.finish();
+    if let Some(mistake) = found.iter().next() {
+        panic!("the library has no mistakes: {mistake:?}");
+    }
+    program
+}
+
 impl<'a> Analysis<'a> {
     fn new(names: &'a Names, options: Options) -> Self {
         let word = |text| names.find(text).expect("words are interned first");

@@ -2,7 +2,9 @@
 
 use super::{Body, Operand, OperandKind};
 use crate::hir::CompareOp;
-use crate::hir::code::{BinaryOp as Op, ExprId, ExprKind, PathStep, StmtKind, UnaryOp as Unary};
+use crate::hir::code::{
+    BinaryOp as Op, ExprId, ExprKind, PathId, PathStep, StmtKind, UnaryOp as Unary,
+};
 use crate::st::constant::Const;
 use crate::st::elementary::{El, Family};
 use crate::st::signature::{Bindings, PouId};
@@ -68,21 +70,29 @@ impl Body<'_, '_> {
                 let value = self.add_expr(ExprKind::Now, El::Ltime.storage(), range);
                 Operand::value(value, TypeId::of(El::Ltime), range)
             }
-            "elapsed" => {
-                let operand = next();
-                let OperandKind::Place(place) = &operand.kind else {
-                    return self.error(Message::E3015, range, "ELAPSED takes a variable");
-                };
-                let place = place.clone();
-                let path = self.path_of(&place, range);
-                let value = self.add_expr(ExprKind::Elapsed(path), El::Ltime.storage(), range);
-                Operand::value(value, TypeId::of(El::Ltime), range)
-            }
+            "elapsed" => self.elapsed(ExprKind::Elapsed, El::Ltime, &next(), range),
+            "elapsed_ms" => self.elapsed(ExprKind::ElapsedUnits, El::Dint, &next(), range),
             _ => {
                 let message = format!("the intrinsic {name} is not compiled yet");
                 self.error(Message::E2010, range, message)
             }
         }
+    }
+
+    /// The time since a variable was renewed.
+    fn elapsed(
+        &mut self,
+        kind: fn(PathId) -> ExprKind,
+        el: El,
+        kept: &Operand,
+        range: TextRange,
+    ) -> Operand {
+        let OperandKind::Place(place) = &kept.kind else {
+            return self.error(Message::E3015, range, "ELAPSED takes a variable");
+        };
+        let path = self.path_of(place, range);
+        let value = self.add_expr(kind(path), el.storage(), range);
+        Operand::value(value, TypeId::of(el), range)
     }
 
     /// `MAX_LENGTH(s)`, `LOWER_BOUND(a, 1)`: what is known from the type of the argument alone.
