@@ -57,6 +57,9 @@ pub struct CaseError {
     pub message: String,
 }
 
+/// The folder of cases about what CODESYS adds.
+const EXTENSIONS: &str = "codesys";
+
 impl CaseError {
     pub(crate) fn at(line: usize, message: impl Into<String>) -> Self {
         let message = message.into();
@@ -168,7 +171,7 @@ impl Case {
 
     fn check(&self) -> Result<(), CaseError> {
         let error = |message: String| Err(CaseError::at(1, message));
-        if self.covers.is_empty() {
+        if self.covers.is_empty() && self.folder() != Some(EXTENSIONS) {
             return error("`covers` is missing".to_owned());
         }
         if self.about.is_empty() {
@@ -199,12 +202,28 @@ impl Case {
         }
     }
 
+    fn folder(&self) -> Option<&str> {
+        self.name.split_once('/').map(|(folder, _)| folder)
+    }
+
+    /// What is no part of the standard proves nothing about it.
+    fn check_extension(&self) -> Result<(), CaseError> {
+        if self.covers.is_empty() {
+            return Ok(());
+        }
+        let message = format!("a case in {EXTENSIONS} covers no feature of the standard");
+        Err(CaseError::at(1, message))
+    }
+
     /// A case lies with the table of a feature that it covers.
     fn check_name(&self) -> Result<(), CaseError> {
-        let folder = self.name.split_once('/').map(|(folder, _)| folder);
-        let table = folder.and_then(|folder| folder.strip_prefix('t'));
+        if self.folder() == Some(EXTENSIONS) {
+            return self.check_extension();
+        }
+        let table = self.folder().and_then(|folder| folder.strip_prefix('t'));
         let Some(table) = table.filter(|table| table.len() == 2) else {
-            return Err(CaseError::at(1, "a case lies in a folder tNN"));
+            let message = format!("a case lies in a folder tNN, or in {EXTENSIONS}");
+            return Err(CaseError::at(1, message));
         };
         let table = table.trim_start_matches('0');
         let own = |id: &FeatureId| id.edition == Edition::Three && id.table == table;
@@ -322,9 +341,12 @@ mod tests {
             assert!(error.message.contains(words), "{keys}: {error}");
         }
         let text = format!("(*! {HEAD}{TABLE}*)\n");
-        for name in ["product", "t7/product", "x71/product"] {
+        for name in ["product", "t7/product", "x71/product", "codesys/product"] {
             assert!(Case::parse(name, &text).is_err(), "{name}");
         }
+        let text = format!("(*! about: it sets\n{TABLE}*)\n");
+        assert!(Case::parse("codesys/set", &text).is_ok());
+        assert!(Case::parse("t71/set", &text).is_err());
         let text = format!("(*! {HEAD}{TABLE}*)\nPROGRAM p (*~ E0010 *)\n");
         let error = Case::parse("t71/product", &text).unwrap_err();
         assert!(error.message.contains("cannot run"), "{error}");

@@ -267,6 +267,8 @@ codes! {
     E7010 Error "target cannot express a reference";
     // 8 dialect policy
     E8001 Error "form belongs to another dialect";
+    E8002 Error "form of CODESYS is not compiled";
+    E8003 Warning "pragma means nothing here";
 }
 
 impl Code {

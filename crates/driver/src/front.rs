@@ -17,6 +17,7 @@ use iecc_lower::{MILLISECOND_NS, OnFault};
 use iecc_sema::hir::{self, StructKind, Trigger};
 use iecc_sema::{logix, st};
 use iecc_source::{FileId, SourceMap};
+use std::path::Path;
 
 /// Choices that the source does not make.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -155,9 +156,11 @@ fn check_text(
 ) -> Option<hir::Program> {
     let mut names = Names::new();
     // Names keep their first spelling, which is to be the user's.
-    let parse = |file: &FileId| {
-        let text = map.file(*file).text();
-        parse_file(*file, text, options.dialect, &mut names, found)
+    let parse = |id: &FileId| {
+        let source = map.file(*id);
+        let mut file = parse_file(*id, source.text(), options.dialect, &mut names, found);
+        file.name = list_name(source.name()).map(|name| names.reserve(name));
+        file
     };
     let files: Vec<File> = sources.files().iter().map(parse).collect();
     let library = library(map, sources, &mut names);
@@ -167,6 +170,16 @@ fn check_text(
         entry: options.entry.as_deref().map(|entry| names.intern(entry)),
     };
     Some(st::analyze(&library, &files, &names, options, found))
+}
+
+/// What a list of global variables in a file is called: the name of the file, where that is a name.
+fn list_name(path: &str) -> Option<&str> {
+    let name = Path::new(path).file_stem()?.to_str()?;
+    let mut letters = name.bytes();
+    let first = letters.next()?;
+    let begins = first.is_ascii_alphabetic() || first == b'_';
+    let goes_on = letters.all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
+    (begins && goes_on).then_some(name)
 }
 
 /// The trees of the standard library.

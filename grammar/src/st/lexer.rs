@@ -43,12 +43,33 @@ pub fn lex<'t>(file: FileId, text: &'t str, dialect: Dialect, names: &mut Names)
     lexer.run();
     let StLexer { mut list, soft, .. } = lexer;
     soft::decide(&mut list, &soft);
+    if dialect == Dialect::Codesys {
+        list = with_semicolons(&list);
+    }
     Tokens {
         file,
         text,
         list,
         no_name,
     }
+}
+
+/// CODESYS needs no semicolon behind the end of a block.
+fn with_semicolons(list: &[Token]) -> Vec<Token> {
+    let mut made = Vec::with_capacity(list.len());
+    for (index, &token) in list.iter().enumerate() {
+        made.push(token);
+        let mut behind = list[index + 1..].iter().map(|next| next.kind);
+        if token.kind.ends_block() && behind.find(|kind| !kind.is_trivia()) != Some(Kind::Semicolon)
+        {
+            made.push(Token {
+                kind: Kind::Semicolon,
+                start: token.end,
+                ..token
+            });
+        }
+    }
+    made
 }
 
 impl Tokens<'_> {

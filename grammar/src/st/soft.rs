@@ -95,6 +95,8 @@ impl Open {
                 self.properties > 0 && !named && (empty || holds)
             }
             Kind::EndGet | Kind::EndSet => self.properties > 0 && !named,
+            // `RESOURCE name ON name`; two names never stand side by side elsewhere.
+            Kind::On => before(&[Kind::Word]) && after(&[Kind::Word]),
             _ => unreachable!("{kind:?} is not soft"),
         }
     }

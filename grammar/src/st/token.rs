@@ -24,6 +24,8 @@ enum Words {
     Edition3,
     /// Reserved by the standard for Sequential Function Chart, names in CODESYS.
     Chart,
+    /// A keyword, but in CODESYS only where the words around it leave nothing else.
+    SoftInCodesys,
     /// A keyword where the words around it leave nothing else, else a name, in all dialects:
     /// words of CODESYS, and some that are names of parameters as well.
     Soft,
@@ -248,7 +250,7 @@ kinds! {
     EndConfiguration "END_CONFIGURATION" All,
     Resource "RESOURCE" All,
     EndResource "END_RESOURCE" All,
-    On "ON" All,
+    On "ON" SoftInCodesys,
     Task "TASK" All,
     With "WITH" All,
     ReadOnly "READ_ONLY" All,
@@ -303,6 +305,14 @@ impl Kind {
         )
     }
 
+    /// Whether it ends a statement that holds others.
+    pub(crate) fn ends_block(self) -> bool {
+        matches!(
+            self,
+            Self::EndIf | Self::EndCase | Self::EndFor | Self::EndWhile | Self::EndRepeat
+        )
+    }
+
     /// Whether it qualifies a declaration.
     pub(crate) fn is_modifier(self) -> bool {
         matches!(
@@ -343,7 +353,7 @@ impl Keywords {
         };
         for &(kind, spelling, words) in KEYWORDS {
             if is_keyword(words, dialect) {
-                enter(spelling, kind, words == Words::Soft);
+                enter(spelling, kind, is_soft(words, dialect));
             }
         }
         enter("S", Kind::LatchAssign, true);
@@ -357,9 +367,17 @@ impl Keywords {
     }
 }
 
+fn is_soft(words: Words, dialect: Dialect) -> bool {
+    match words {
+        Words::Soft => true,
+        Words::SoftInCodesys => dialect == Dialect::Codesys,
+        Words::All | Words::Edition3 | Words::Chart => false,
+    }
+}
+
 fn is_keyword(words: Words, dialect: Dialect) -> bool {
     match words {
-        Words::All | Words::Soft => true,
+        Words::All | Words::Soft | Words::SoftInCodesys => true,
         Words::Edition3 => dialect != Dialect::IecEdition2,
         Words::Chart => dialect != Dialect::Codesys,
     }

@@ -140,6 +140,7 @@ impl<'a, 't> Assembler<'a, 't> {
         };
         let file = File {
             id: tokens.file,
+            name: None,
             scopes: vec![scope],
             units: Vec::new(),
         };

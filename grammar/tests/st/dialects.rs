@@ -106,3 +106,22 @@ fn words_of_charts_are_names_in_codesys() {
     outline_in(text, Dialect::Codesys);
     assert_eq!(parse(text, Dialect::Iec).diagnostics.len(), 2);
 }
+
+#[test]
+fn blocks_of_codesys_need_no_semicolon() {
+    let text = "PROGRAM p VAR a : INT; END_VAR
+        IF a = 1 THEN a := 2; END_IF (* here *)
+        CASE a OF 1: a := 3; END_CASE
+        FOR a := 1 TO 2 DO ; END_FOR;
+        END_PROGRAM";
+    outline_in(text, Dialect::Codesys);
+    assert_eq!(parse(text, Dialect::Iec).diagnostics.len(), 2);
+}
+
+#[test]
+fn on_is_a_name_in_codesys_but_in_a_resource() {
+    let text = "TYPE t : (Off, On); END_TYPE PROGRAM p VAR On : t; END_VAR On := t.On; END_PROGRAM
+        CONFIGURATION c RESOURCE r ON PLC TASK k(INTERVAL := T#1s, PRIORITY := 1); END_RESOURCE END_CONFIGURATION";
+    outline_in(text, Dialect::Codesys);
+    assert!(parse(text, Dialect::Iec).diagnostics.has_errors());
+}

@@ -45,6 +45,7 @@ pub use pou::{Accessor, Action, Member, Method, Pou, PouKind, Property};
 pub use print::{print_expr, print_file, print_unit};
 pub use stmt::{AssignOp, Block, CaseArm, IfArm, Label, Stmt, StmtKind};
 
+use crate::names::Symbol;
 use iecc_source::{ContentHash, FileId, Span, TextRange};
 
 /// How deep expressions nest. A chain of operators nests once per operator.
@@ -64,6 +65,8 @@ pub const MAX_SCOPE_DEPTH: usize = 64;
 pub struct File {
     /// Which file.
     pub id: FileId,
+    /// Its name without the ending, where lists of global variables have one (CODESYS).
+    pub name: Option<Symbol>,
     /// The file itself (the first one), and every namespace as it is opened. Parents come before
     /// their children.
     pub scopes: Vec<Scope>,

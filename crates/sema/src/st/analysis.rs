@@ -57,6 +57,7 @@ pub(crate) struct Words {
     pub interval: Symbol,
     pub single: Symbol,
     pub priority: Symbol,
+    pub bit: Symbol,
 }
 
 /// Everything.
@@ -70,6 +71,8 @@ pub(crate) struct Analysis<'a> {
     pub type_decls: Vec<TypeDecl>,
     pub pous: Vec<Pou>,
     pub globals: Vec<Global>,
+    /// Lists of global variables and their names.
+    pub lists: Vec<(UnitId, Option<Symbol>)>,
     /// Bare enumerators and the enumerations that have them.
     pub enumerators: FxHashMap<Symbol, Vec<(TypeId, i128)>>,
     /// Types that need no declaration.

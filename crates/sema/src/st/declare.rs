@@ -28,7 +28,7 @@ impl<'a> Analysis<'a> {
             match *item {
                 Item::Unit(unit) => {
                     let namespace = namespaces[scope.0 as usize];
-                    self.declare_unit(&file.units[unit as usize], namespace);
+                    self.declare_unit(&file.units[unit as usize], namespace, file.name);
                 }
                 Item::Scope(inner) => self.declare_scope(file, inner, namespaces),
             }
@@ -72,7 +72,7 @@ impl<'a> Analysis<'a> {
         self.namespaces[namespace.index()].internal.insert(name);
     }
 
-    fn declare_unit(&mut self, unit: &'a st::Unit, namespace: NamespaceId) {
+    fn declare_unit(&mut self, unit: &'a st::Unit, namespace: NamespaceId, list: Option<Symbol>) {
         let id = UnitId(self.units.len() as u32);
         self.units.push(UnitRef { unit, namespace });
         match &unit.kind {
@@ -108,7 +108,7 @@ impl<'a> Analysis<'a> {
                     }
                 }
             }
-            UnitKind::Globals(section) => self.declare_globals(id, namespace, section),
+            UnitKind::Globals(_) => self.lists.push((id, list)),
             UnitKind::Using(_) | UnitKind::Nothing | UnitKind::Error => {}
         }
     }

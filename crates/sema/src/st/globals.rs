@@ -8,6 +8,7 @@ use super::signature::{
     Def, Global, GlobalId, Initial, NamespaceId, PouId, Spot, State, Storage, UnitId, Var,
 };
 use super::types::TypeId;
+use crate::hir::Place;
 use iecc_ast::st::{
     self, Area, Declarations, Modifier, ModifierKind, PouKind, SectionKind, VarSection,
 };
@@ -34,6 +35,8 @@ impl Analysis<'_> {
                 let id = GlobalId(self.globals.len() as u32);
                 self.globals.push(Global {
                     name: ident.name,
+                    list: None,
+                    qualified: false,
                     ty: TypeId::ERROR,
                     constant,
                     initial: decl.initial.map(|expr| Initial { unit, expr }),
@@ -105,9 +108,13 @@ impl Analysis<'_> {
             None => self.default_init(global.ty),
         };
         let Some(location) = global.decl.location else {
-            let name = self.text(global.name).to_owned();
+            let name = self.global_name(global);
             let (storage, view) = (self.storage(global.ty), self.view(global.ty));
             let tag = self.add_tag(&name, storage, view, init, Some(global.span));
+            if let Some(list) = global.list.filter(|_| !global.qualified) {
+                let name = format!("{}.{name}", self.text(list));
+                self.hir.names.push((name, Place::whole(tag)));
+            }
             let steps = Vec::new();
             return Some(Spot { tag, steps });
         };

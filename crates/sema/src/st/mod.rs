@@ -27,15 +27,18 @@ mod declare;
 mod dialect;
 mod dispatch;
 pub mod elementary;
+mod extended;
 mod globals;
 mod heritage;
 mod inheritance;
 mod initial;
 mod instance;
 mod lint;
+mod lists;
 mod namespaces;
 mod overlay;
 mod paths;
+mod pragmas;
 mod program;
 mod resolve;
 pub mod signature;
@@ -81,7 +84,7 @@ pub fn intern_words(names: &mut Names) {
     }
 }
 
-const WORDS: [&str; 5] = ["EN", "ENO", "INTERVAL", "SINGLE", "PRIORITY"];
+const WORDS: [&str; 6] = ["EN", "ENO", "INTERVAL", "SINGLE", "PRIORITY", "BIT"];
 
 /// Decides what the program of some files means. The library's files are trees like others; what
 /// of them is not used is not looked at. The program means nothing if there are errors.
@@ -100,7 +103,9 @@ pub fn analyze(
     for file in files {
         analysis.declare_file(file, NamespaceId::GLOBAL);
     }
+    analysis.declare_lists();
     analysis.check_dialect();
+    analysis.check_pragmas();
     analysis.index_units();
     analysis.resolve_usings();
     analysis.resolve_heritage();
@@ -148,6 +153,15 @@ impl<'a> Analysis<'a> {
             });
             elementary_names.insert(word(name), ty);
         }
+        if options.codesys {
+            // A type of its own, since it takes a bit of a structure there.
+            let bit = types.add_alias(types::AliasDef {
+                name: word("BIT"),
+                base: TypeId::BOOL,
+                initial: None,
+            });
+            elementary_names.insert(word("BIT"), bit);
+        }
         let global = Namespace::default();
         Self {
             names,
@@ -157,6 +171,7 @@ impl<'a> Analysis<'a> {
                 interval: word("INTERVAL"),
                 single: word("SINGLE"),
                 priority: word("PRIORITY"),
+                bit: word("BIT"),
             },
             options,
             units: Vec::new(),
@@ -165,6 +180,7 @@ impl<'a> Analysis<'a> {
             type_decls: Vec::new(),
             pous: Vec::new(),
             globals: Vec::new(),
+            lists: Vec::new(),
             enumerators: FxHashMap::default(),
             elementary_names,
             pou_of_unit: FxHashMap::default(),

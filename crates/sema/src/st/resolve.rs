@@ -6,6 +6,7 @@
 use super::analysis::{Analysis, MAX_RESOLUTION_DEPTH, Resolution};
 use super::elementary::El;
 use super::overlay::Shape;
+use super::pragmas::{PACK_MODE, QUALIFIED_ONLY, STRICT};
 use super::signature::{Bindings, Def, Initial, NamespaceId, TypeDeclId, UnitId};
 use super::storage::MAX_ELEMENTS;
 use super::types::{AliasDef, EnumDef, Member, ReferenceKind, StructDef, TypeId, TypeKind};
@@ -63,6 +64,10 @@ impl Analysis<'_> {
         let name = Some(decl.name.name);
         let written = self.unit(scope.unit).arena[decl.ty];
         let base = self.written_type(scope, decl.ty, name);
+        let base = match decl.extends {
+            Some(extended) => self.extended_struct(scope, base, extended),
+            None => base,
+        };
         let own = matches!(written.kind, Written::Enum { .. } | Written::Struct { .. });
         if base == TypeId::ERROR || (own && decl.initial.is_none()) {
             return base;
@@ -213,6 +218,10 @@ impl Analysis<'_> {
             self.error(Code::E1010, span, "this path leads to no type");
             return;
         };
+        if name == self.words.bit && !self.options.codesys {
+            self.foreign(scope.unit, written.range, "BIT");
+            return;
+        }
         let message = format!("no type is named `{}`", self.text(name));
         let mut diagnostic = Diagnostic::new(Code::E1010, span, message);
         let candidates = self.visible(scope.namespace);
@@ -431,11 +440,13 @@ impl Analysis<'_> {
         let Ok(overlay) = self.overlay(scope, members, &made, shape) else {
             return TypeId::ERROR;
         };
+        let packed = self.has_attribute(scope.unit, range.start, PACK_MODE);
         self.types.add_struct(StructDef {
             name,
             members: made,
             by_name,
             overlay,
+            packed,
             span: unit.span(range),
         })
     }
@@ -468,10 +479,13 @@ impl Analysis<'_> {
                 }
             },
         };
+        let strict = self.has_attribute(scope.unit, range.start, STRICT);
+        let qualified = self.has_attribute(scope.unit, range.start, QUALIFIED_ONLY);
         let ty = self.types.add_enum(EnumDef {
             name,
             base: el,
-            named_values: base.is_some(),
+            named_values: base.is_some() && !strict,
+            qualified,
             values: Vec::new(),
             span: unit.span(range),
         });
@@ -495,7 +509,9 @@ impl Analysis<'_> {
                 continue;
             }
             known.push((name, number));
-            self.enumerators.entry(name).or_default().push((ty, number));
+            if !qualified {
+                self.enumerators.entry(name).or_default().push((ty, number));
+            }
         }
         ty
     }

@@ -196,6 +196,10 @@ pub struct Spot {
 pub struct Global {
     /// Its name.
     pub name: Symbol,
+    /// The list it is in, if that has a name.
+    pub list: Option<Symbol>,
+    /// Whether it is named with its list alone.
+    pub qualified: bool,
     /// Its type.
     pub ty: TypeId,
     /// Whether it cannot be changed.

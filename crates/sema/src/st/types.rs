@@ -92,6 +92,8 @@ pub struct EnumDef {
     pub base: El,
     /// Whether it has values of a type that was given, so that arithmetic is allowed.
     pub named_values: bool,
+    /// Whether its values are named with it alone.
+    pub qualified: bool,
     /// Its values.
     pub values: Vec<(Symbol, i128)>,
     /// The declaration.
@@ -109,6 +111,8 @@ pub struct StructDef {
     pub by_name: FxHashMap<Symbol, u32>,
     /// Where the members lie, if they overlap.
     pub overlay: Option<Overlay>,
+    /// Whether an attribute says how its members are packed.
+    pub packed: bool,
     /// The declaration.
     pub span: Span,
 }

@@ -166,6 +166,9 @@ impl Body<'_, '_> {
         if let Some(operand) = self.typed_conversion(callee, arguments, range, want) {
             return operand;
         }
+        if let Some(operand) = self.clock(callee, arguments, range) {
+            return operand;
+        }
         match self.callee(callee, range) {
             Some(Callee::Mistake) | None => {
                 self.arguments_only(arguments);

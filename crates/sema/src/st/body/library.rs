@@ -366,6 +366,9 @@ impl Body<'_, '_> {
         }
         if let ([(_, operand)], true) = (&mut given.operands[..], converts) {
             *operand = self.as_type(operand.clone(), source);
+            if let Some(made) = self.time_and_bits(name, &function, operand, range) {
+                return Some(made);
+            }
             if given.eno.is_none()
                 && let Some(folded) = self.folded_conversion(&function, operand, range)
             {

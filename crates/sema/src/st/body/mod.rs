@@ -22,6 +22,7 @@ mod place;
 mod reference;
 mod stmt;
 mod time;
+mod untyped;
 
 pub(crate) use connect::Connections;
 pub(crate) use operand::{Operand, OperandKind, Place, Rights};

@@ -167,7 +167,10 @@ impl Body<'_, '_> {
             | BinaryOp::Less
             | BinaryOp::LessEqual
             | BinaryOp::Greater
-            | BinaryOp::GreaterEqual => self.compare(op, left, right, range),
+            | BinaryOp::GreaterEqual => {
+                let (left, right) = self.numbers_as_durations(left, right);
+                self.compare(op, left, right, range)
+            }
             BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
                 self.bitwise(op, left, right, range, want)
             }
@@ -263,6 +266,13 @@ impl Body<'_, '_> {
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
+        let (left, right) = match op {
+            BinaryOp::Add | BinaryOp::Subtract => self.numbers_as_durations(left, right),
+            _ => (left, right),
+        };
+        if let Some(result) = self.divided_durations(op, &left, &right, range) {
+            return result;
+        }
         if let Some(result) = self.time_arithmetic(op, &left, &right, range) {
             return result;
         }

@@ -50,6 +50,7 @@ impl Body<'_, '_> {
             return Operand::constant(Const::Int(1), TypeId::BOOL, range);
         }
         if let Some(ty) = want
+            && !self.is_qualified(ty)
             && let Some(operand) = self.find_enumerator(ty, name, range)
         {
             return operand;
@@ -93,7 +94,13 @@ impl Body<'_, '_> {
             candidates.extend(pou.vars.iter().map(|var| var.name));
             at = pou.owner.or(pou.extends.first().copied());
         }
-        if let Some(close) = self.an.similar(name, candidates) {
+        let mut enums = self.an.types.enums.iter().filter(|def| def.qualified);
+        let home = enums.find(|def| def.values.iter().any(|(known, _)| *known == name));
+        if let Some(home) = home.and_then(|def| def.name) {
+            let (home, text) = (self.text(home), self.text(name));
+            let note = format!("it is a value of `{home}`, which is named with it: {home}.{text}");
+            diagnostic = diagnostic.note(note);
+        } else if let Some(close) = self.an.similar(name, candidates) {
             diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
         }
         self.report(diagnostic);
@@ -432,6 +439,11 @@ impl Body<'_, '_> {
             Def::Type(id) => {
                 let ty = self.an.declared_type(id);
                 let is_enum = matches!(self.an.types.base(ty), TypeKind::Enum(_));
+                if is_enum && !self.an.options.codesys && !self.an.is_library(self.unit) {
+                    let what = "a value of an enumeration behind a dot";
+                    self.an.foreign(self.unit, range, what);
+                    return Some(Operand::error(range));
+                }
                 is_enum.then(|| self.enumerator_of(ty, member.name, range))
             }
             Def::Pou(_) | Def::Global(_) => None,
@@ -482,6 +494,14 @@ impl Body<'_, '_> {
         let (_, value) = def.values.iter().find(|(known, _)| *known == name)?;
         let ty = self.an.types.strip(ty);
         Some(Operand::constant(Const::Int(*value), ty, range))
+    }
+
+    /// Whether the values of an enumeration are named with it alone.
+    fn is_qualified(&self, ty: TypeId) -> bool {
+        match self.an.types.base(ty) {
+            TypeKind::Enum(index) => self.an.types.enums[*index as usize].qualified,
+            _ => false,
+        }
     }
 
     fn ambiguous_enumerator(

@@ -250,12 +250,35 @@ impl Body<'_, '_> {
             return;
         }
         let place = self.place(target, None);
-        let value = self.expr(value, None);
-        if place.is_error() || value.is_error() {
+        if op == AssignOp::Bind {
+            self.expr(value, None);
+            self.error(Message::E2010, range, "`REF=` is not compiled yet");
             return;
         }
-        let message = format!("`{}` is not compiled yet", op.as_str());
-        self.error(Message::E2010, range, message);
+        let value = self.expr(value, Some(TypeId::BOOL));
+        let Some(to) = self.writable(&place) else {
+            return;
+        };
+        if self.an.types.strip(place.ty) != TypeId::BOOL {
+            let name = self.type_name(place.ty);
+            let message = format!("`{}` is for BOOL, not {name}", op.as_str());
+            self.error(Message::E2022, place.range, message);
+            return;
+        }
+        self.latch(&to, op == AssignOp::Latch, &value, range);
+    }
+
+    /// Makes a BOOL TRUE or FALSE if a condition holds; else it keeps its value.
+    fn latch(&mut self, to: &Place, to_value: bool, condition: &Operand, range: TextRange) {
+        let condition = self.condition(condition);
+        let path = self.path_of(to, range);
+        let value = self.add_const(u64::from(to_value), crate::hir::Elementary::Bool, range);
+        let store = self.add_stmt(StmtKind::Assign(path, value), range);
+        let kind = StmtKind::If {
+            arms: vec![(condition, vec![store])],
+            otherwise: Vec::new(),
+        };
+        self.before(kind, range);
     }
 
     /// The place of an operand that is to be changed; a message if it must not be.

@@ -1,0 +1,147 @@
+//! Times as numbers (CODESYS): a whole number beside a duration counts milliseconds, beside a long
+//! one nanoseconds, as in conversions; the quotient of two durations is a number; `TIME()` is the clock.
+
+use super::{Body, Operand};
+use crate::hir::code::{BinaryOp as Op, ExprKind};
+use crate::st::constant::Const;
+use crate::st::elementary::El;
+use crate::st::types::TypeId;
+use iecc_ast::Symbol;
+use iecc_ast::st::{self, BinaryOp, ExprKind as Written};
+use iecc_diag::Code as Message;
+use iecc_source::TextRange;
+
+/// What a number counts beside a TIME.
+const MILLISECOND: i128 = 1_000_000;
+
+impl Body<'_, '_> {
+    /// Operands of a sum, a difference or a comparison, a number beside a duration made one.
+    pub(super) fn numbers_as_durations(
+        &mut self,
+        left: Operand,
+        right: Operand,
+    ) -> (Operand, Operand) {
+        if !self.an.options.codesys {
+            return (left, right);
+        }
+        match (self.duration(&left), self.duration(&right)) {
+            (Some(el), None) => {
+                let right = self.number_as(right, el);
+                (left, right)
+            }
+            (None, Some(el)) => (self.number_as(left, el), right),
+            (Some(_), Some(_)) | (None, None) => (left, right),
+        }
+    }
+
+    fn duration(&self, operand: &Operand) -> Option<El> {
+        let el = self.an.types.elementary(operand.ty);
+        el.filter(|el| el.is_duration())
+    }
+
+    /// A whole number or bit string as a duration; others stay what they are.
+    fn number_as(&mut self, operand: Operand, to: El) -> Operand {
+        let (ty, range) = (TypeId::of(to), operand.range);
+        let unit = if to.is_long_time() { 1 } else { MILLISECOND };
+        let el = self.an.types.elementary(operand.ty);
+        let whole = |el: El| el.is_int() || (el.is_bits() && el != El::Bool);
+        if operand.ty != TypeId::UNTYPED_INT && !el.is_some_and(whole) {
+            return operand;
+        }
+        if let Some(Const::Int(number)) = operand.as_const() {
+            return self.folded(Const::Int(number * unit), ty, range);
+        }
+        let value = self.raw(&operand);
+        let value = self.scaled_to(value, El::Lint, unit as i64, range);
+        Operand::value(value, ty, range)
+    }
+
+    /// The quotient of two durations, and what is left of the division.
+    pub(super) fn divided_durations(
+        &mut self,
+        op: BinaryOp,
+        left: &Operand,
+        right: &Operand,
+        range: TextRange,
+    ) -> Option<Operand> {
+        let (a, b) = (self.duration(left)?, self.duration(right)?);
+        let ty = match op {
+            BinaryOp::Divide => TypeId::of(El::Lint),
+            BinaryOp::Modulo => TypeId::of(if a.is_long_time() { a } else { b }),
+            _ => return None,
+        };
+        if !self.an.options.codesys {
+            return None;
+        }
+        if self.divides_by_zero(op, El::Lint, right) {
+            return Some(self.error(Message::E2028, right.range, "division by zero"));
+        }
+        if let (Some(Const::Int(a)), Some(Const::Int(b))) = (left.as_const(), right.as_const()) {
+            let value = super::operator::fold_int(op, *a, *b)?;
+            return Some(self.folded(Const::Int(value), ty, range));
+        }
+        let op = match op {
+            BinaryOp::Modulo => Op::Modulo,
+            _ => Op::Divide,
+        };
+        let (left, right) = (self.raw(left), self.raw(right));
+        let storage = El::Lint.storage();
+        let value = self.add_expr(ExprKind::Binary(op, left, right), storage, range);
+        Some(Operand::value(value, ty, range))
+    }
+
+    /// `TIME_TO_DWORD`, `DWORD_TO_TIME` and their like: by way of the number of the same width.
+    pub(super) fn time_and_bits(
+        &mut self,
+        name: Symbol,
+        function: &str,
+        operand: &Operand,
+        range: TextRange,
+    ) -> Option<Operand> {
+        let target = self.an.named_elementary(function.strip_prefix("TO_")?)?;
+        let to = self.an.types.elementary(target)?;
+        let from = self.an.types.elementary(operand.ty)?;
+        let bits = |el: El| el.is_bits() && el != El::Bool;
+        let (from_number, to_number) = match (from.is_duration(), to.is_duration()) {
+            (true, false) if bits(to) => (from, number_of(to)),
+            (false, true) if bits(from) => (number_of(from), to),
+            _ => return None,
+        };
+        if !self.an.options.codesys {
+            self.an.foreign(self.unit, range, self.text(name));
+            return Some(Operand::error(range));
+        }
+        let value = self.raw(operand);
+        let value = self.convert_expr(value, from_number, to_number, false, range);
+        Some(Operand::value(value, target, range))
+    }
+
+    /// `TIME()`, `LTIME()`: the time of the scan.
+    pub(super) fn clock(
+        &mut self,
+        callee: st::Id<st::Expr>,
+        arguments: st::List<st::Argument>,
+        range: TextRange,
+    ) -> Option<Operand> {
+        let Written::Name(name) = self.arena()[callee].kind else {
+            return None;
+        };
+        let ty = self.an.elementary_names.get(&name).copied()?;
+        let clock = self.an.types.elementary(ty).is_some_and(El::is_duration);
+        if !clock || !arguments.is_empty() || !self.an.options.codesys || self.constant_only {
+            return None;
+        }
+        let value = self.add_expr(ExprKind::Now, El::Ltime.storage(), range);
+        Some(Operand::value(value, ty, range))
+    }
+}
+
+/// The number with the bits of a bit string.
+fn number_of(bits: El) -> El {
+    match bits.bits() {
+        8 => El::Usint,
+        16 => El::Uint,
+        32 => El::Udint,
+        _ => El::Ulint,
+    }
+}
