@@ -4,6 +4,7 @@
 //! prescan over the initial values with the interpreter. Each reports everything it finds; each
 //! gives a result only when there is no error.
 
+use crate::evaluate::Constants;
 use crate::rename::{Rename, rename};
 use crate::run::parse_duration;
 use crate::{Language, Levels, Sources};
@@ -144,7 +145,8 @@ fn check_logix(
     let mut names = Names::new();
     let library = library(map, sources, &mut names);
     st::intern_words(&mut names);
-    let library = st::library(&library, &names, &logix::library_functions());
+    let functions = logix::library_functions();
+    let library = st::library(&library, &names, &functions, &Constants);
     Some(logix::analyze(&project, library, &options, found))
 }
 
@@ -169,7 +171,10 @@ fn check_text(
         codesys: options.dialect == Dialect::Codesys,
         entry: options.entry.as_deref().map(|entry| names.intern(entry)),
     };
-    Some(st::analyze(&library, &files, &names, options, found))
+    let evaluator = &Constants;
+    Some(st::analyze(
+        &library, &files, &names, options, evaluator, found,
+    ))
 }
 
 /// What a list of global variables in a file is called: the name of the file, where that is a name.

@@ -8,6 +8,7 @@ mod choices;
 mod comments;
 mod constants;
 mod engine;
+mod evaluate;
 mod explain;
 mod front;
 mod levels;

@@ -130,6 +130,11 @@ fn status(program: &hir::Program, options: &Options, fields: &mut Vec<FieldDef>)
     Some(fields.len() as u32 - 1)
 }
 
+/// A place of the program in the state of its module.
+pub fn state_place(place: &hir::Place) -> Place {
+    types::place(place)
+}
+
 /// A name of our own beside those of the user.
 fn fresh(name: &str, taken: impl Fn(&str) -> bool) -> String {
     let mut name = name.to_owned();

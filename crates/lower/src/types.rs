@@ -96,6 +96,11 @@ impl<'p> TypeMap<'p> {
         made
     }
 
+    /// A structure that storage is made of.
+    pub(crate) fn known_struct(&self, id: hir::StructId) -> StructId {
+        self.structs[&id]
+    }
+
     /// The predefined structure with this name.
     pub(crate) fn predefined(&mut self, name: &str) -> StructId {
         let mut structs = self.program.types.structs();
@@ -205,14 +210,16 @@ pub(crate) fn scalar(ty: Elementary) -> Type {
 /// A place in the state.
 pub(crate) fn place(place: &hir::Place) -> Place {
     let start = Place::root(Root::State).field(place.tag.index() as u32);
-    let steps: Vec<Projection> = place
-        .path
-        .iter()
+    start.join(&steps(&place.path))
+}
+
+/// The way from a place.
+pub(crate) fn steps(path: &[Step]) -> Vec<Projection> {
+    path.iter()
         .map(|step| match *step {
             Step::Field(index) => Projection::Field(index),
             Step::Index(index) => Projection::Index(Index::Const(index)),
             Step::Bit(bit) => Projection::Bit(Index::Const(bit)),
         })
-        .collect();
-    start.join(&steps)
+        .collect()
 }

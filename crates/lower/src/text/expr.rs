@@ -6,10 +6,10 @@ use crate::MILLISECOND_NS;
 use crate::types::{result_types, scalar};
 use crate::values;
 use iecc_ir::{
-    BinaryOp as Ir, CompareOp as IrCompare, FaultCode, FuncId, Root, Type, UnaryOp as IrUnary,
-    Value,
+    BinaryOp as Ir, CompareOp as IrCompare, FaultCode, FuncId, Place, Root, Type,
+    UnaryOp as IrUnary, Value,
 };
-use iecc_sema::hir::code::{BinaryOp, CallId, Expr, ExprId, ExprKind, PathId, UnaryOp};
+use iecc_sema::hir::code::{BinaryOp, CallId, Expr, ExprId, ExprKind, UnaryOp};
 use iecc_sema::hir::{Arithmetic, CompareOp, Elementary};
 
 impl<'p> Unit<'_, 'p> {
@@ -50,7 +50,10 @@ impl<'p> Unit<'_, 'p> {
                 self.revive();
                 self.expr(*value)
             }
-            ExprKind::Address(path) => self.address(*path),
+            ExprKind::Address(path) => {
+                let place = self.memory(*path);
+                self.address_of(place)
+            }
             ExprKind::Now => self.builder.now(),
             ExprKind::Elapsed(path) => {
                 let place = self.memory(*path);
@@ -221,8 +224,7 @@ impl<'p> Unit<'_, 'p> {
     }
 
     /// Nothing outlives what is local, so that has no address.
-    fn address(&mut self, path: PathId) -> Value {
-        let place = self.memory(path);
+    pub(super) fn address_of(&mut self, place: Place) -> Value {
         match place.root {
             Root::Local(_) => self.builder.constant(Type::I64, 0),
             Root::State | Root::Ref(_) | Root::Deref { .. } => self.builder.address(place),

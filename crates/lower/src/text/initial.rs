@@ -5,10 +5,10 @@
 
 use super::Unit;
 use super::place::Located;
-use crate::types::scalar;
-use iecc_ir::{BinaryOp, CompareOp, Index, Type};
+use crate::types::{self, scalar};
+use iecc_ir::{BinaryOp, CompareOp, Index, Type, Value};
 use iecc_sema::hir;
-use iecc_sema::hir::code::{Init, InitId};
+use iecc_sema::hir::code::{Init, InitId, Target};
 
 /// Elements that are stored one by one.
 const UNROLLED: u32 = 8;
@@ -29,10 +29,27 @@ impl Unit<'_, '_> {
         let bits = match self.program.inits.get(init) {
             Init::Zero => 0,
             Init::Bits(bits) => *bits,
+            Init::Address(target) => {
+                let value = self.initial_address(target);
+                return self.write(at, value);
+            }
             Init::Struct(_) | Init::Array(_) => panic!("the value is elementary"),
         };
         let value = self.builder.constant(self.stored_type(at), bits);
         self.write(at, value);
+    }
+
+    fn initial_address(&mut self, target: &Target) -> Value {
+        match target {
+            Target::Tag(place) => self.address_of(types::place(place)),
+            Target::Around(id, steps) => {
+                let ty = hir::Type::Struct(*id);
+                let around = self.around.iter().rev().find(|at| at.ty == ty);
+                let around = around.and_then(Located::in_memory);
+                let place = around.expect("the value lies in the structure it refers to");
+                self.address_of(place.clone().join(&types::steps(steps)))
+            }
+        }
     }
 
     /// Stores what is not 0 in a place that is. Recursion is bounded by the depth of types.
@@ -46,12 +63,15 @@ impl Unit<'_, '_> {
                     self.initial_value(at, init);
                 }
             }
+            Init::Address(_) => self.initial_value(at, init),
             Init::Struct(members) => {
+                self.around.push(at.clone());
                 for &(member, value) in members {
                     let mut part = at.clone();
                     part.enter_field(self.program, member);
                     self.initial_parts(&part, value);
                 }
+                self.around.pop();
             }
             Init::Array(runs) => {
                 for &(first, count, value) in runs {

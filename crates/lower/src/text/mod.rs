@@ -27,6 +27,7 @@ use iecc_ir::{
 use iecc_sema::hir::code::{Block, ExprKind, LocalId, PathId, Root};
 use iecc_sema::hir::{self, Code, Pou};
 use iecc_source::Span;
+use place::Located;
 use std::sync::Arc;
 
 /// The function of a unit.
@@ -45,6 +46,7 @@ pub(crate) fn unit<'p>(lowering: &mut Lowering<'p>, pou: &'p Pou, code: &'p Code
         label: Arc::from(pou.name.as_str()),
         origin: None,
         loops: Vec::new(),
+        around: Vec::new(),
     };
     unit.at(pou.span);
     unit.declare();
@@ -80,6 +82,8 @@ struct Unit<'l, 'p> {
     origin: Option<Origin>,
     /// Those around the statement, the innermost last.
     loops: Vec<Loop>,
+    /// Structures that are being given their initial values, the innermost last.
+    around: Vec<Located>,
 }
 
 /// A name that the text form does not take for a region.

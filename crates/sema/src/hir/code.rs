@@ -10,7 +10,7 @@
 //! of a [`Code`] and are named by ids; children have smaller ids than their parents, so the tree of
 //! a node is finite. Nesting is bounded by that of the source.
 
-use super::{CompareOp, Elementary, PouId, TagId, Type};
+use super::{CompareOp, Elementary, Place, PouId, Step, StructId, TagId, Type};
 use iecc_source::Span;
 
 macro_rules! ids {
@@ -363,6 +363,17 @@ pub enum Init {
     Struct(Vec<(u32, InitId)>),
     /// Runs of elements, in order: the first, how many, and the value of each.
     Array(Vec<(u32, u32, InitId)>),
+    /// The address of something in the state.
+    Address(Target),
+}
+
+/// What an address at the start stands for.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// A place of a tag.
+    Tag(Place),
+    /// The way into the structure of this type around the value, the innermost of several.
+    Around(StructId, Vec<Step>),
 }
 
 impl Inits {

@@ -12,6 +12,7 @@ use crate::hir::code::PathStep;
 use crate::hir::{self, Elementary, IoPoint, Place, Step, TagId, Type, View};
 use iecc_ast::st::{self, AddressSize, Area, Direct, ExprKind, UnitKind};
 use iecc_diag::{Code, Diagnostics};
+use iecc_source::Span;
 use std::collections::{BTreeMap, HashSet};
 
 /// Overlapping bytes whose bits have names; those of more have none.
@@ -480,7 +481,7 @@ impl Analysis<'_> {
     }
 
     /// Says that the value at an address starts with something else than 0.
-    pub(crate) fn set_initial(&mut self, address: Address, init: hir::InitId) {
+    pub(crate) fn set_initial(&mut self, address: Address, init: hir::InitId, span: Span) {
         let Some(cluster) = self.cluster_of(address) else {
             return;
         };
@@ -490,6 +491,8 @@ impl Analysis<'_> {
             return;
         }
         let hir::code::Init::Bits(bits) = *self.hir.inits.get(init) else {
+            let message = "this initial value at addresses that overlap is not compiled yet";
+            self.error(Code::E2010, span, message);
             return;
         };
         let byte = ((address.first - start) / 8) as u32;
@@ -548,7 +551,8 @@ impl Analysis<'_> {
                     None => self.default_init(var.ty),
                 };
                 if let Some(init) = init {
-                    self.set_initial(address, init);
+                    let span = self.span(self.pous[index].unit, var.range);
+                    self.set_initial(address, init, span);
                 }
             }
         }

@@ -65,6 +65,7 @@ pub(crate) struct Analysis<'a> {
     pub names: &'a Names,
     pub words: Words,
     pub options: super::Options,
+    pub evaluator: &'a dyn super::Evaluator,
     pub units: Vec<UnitRef<'a>>,
     pub namespaces: Vec<Namespace>,
     pub types: Types,

@@ -36,6 +36,19 @@ impl Const {
         }
     }
 
+    /// The value of an elementary type with some bits.
+    pub fn from_bits(el: El, bits: u64) -> Self {
+        match el {
+            El::Real => Self::Real(f64::from(f32::from_bits(bits as u32))),
+            El::Lreal => Self::Real(f64::from_bits(bits)),
+            _ if el.range().0 < 0 => {
+                let shift = 64 - el.bits();
+                Self::Int(i128::from(((bits << shift) as i64) >> shift))
+            }
+            _ => Self::Int(i128::from(bits)),
+        }
+    }
+
     /// As a truth value.
     pub fn as_bool(&self) -> Option<bool> {
         match self {

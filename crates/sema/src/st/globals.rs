@@ -88,7 +88,8 @@ impl Analysis<'_> {
         self.globals[id.index()].state = State::Done;
     }
 
-    /// Gives all global variables their storage.
+    /// Gives all global variables their storage, then their initial values, which may refer to one
+    /// another.
     pub(crate) fn place_globals(&mut self) {
         for index in 0..self.globals.len() {
             let global = self.globals[index].clone();
@@ -99,18 +100,34 @@ impl Analysis<'_> {
                 }
             }
         }
+        for index in 0..self.globals.len() {
+            let global = self.globals[index].clone();
+            if let Some(spot) = &global.spot {
+                self.start_global(&global, spot);
+            }
+        }
         self.nameless_globals();
     }
 
-    fn place_global(&mut self, global: &Global) -> Option<Spot> {
+    fn start_global(&mut self, global: &Global, spot: &Spot) {
         let init = match global.initial {
             Some(initial) => self.initial_value(initial, global.ty),
             None => self.default_init(global.ty),
         };
         let Some(location) = global.decl.location else {
+            self.hir.tags[spot.tag.index()].init = init;
+            return;
+        };
+        if let (Some(init), Some(address)) = (init, self.address(global.unit, location)) {
+            self.set_initial(address, init, global.span);
+        }
+    }
+
+    fn place_global(&mut self, global: &Global) -> Option<Spot> {
+        let Some(location) = global.decl.location else {
             let name = self.global_name(global);
             let (storage, view) = (self.storage(global.ty), self.view(global.ty));
-            let tag = self.add_tag(&name, storage, view, init, Some(global.span));
+            let tag = self.add_tag(&name, storage, view, None, Some(global.span));
             if let Some(list) = global.list.filter(|_| !global.qualified) {
                 let name = format!("{}.{name}", self.text(list));
                 self.hir.names.push((name, Place::whole(tag)));
@@ -125,9 +142,6 @@ impl Analysis<'_> {
         let address = self.address(global.unit, location)?;
         if !self.fits_address(global.unit, location, address, global.ty) {
             return None;
-        }
-        if let Some(init) = init {
-            self.set_initial(address, init);
         }
         let spot = self.spot(address, global.ty);
         if spot.is_none() {
@@ -165,7 +179,8 @@ impl Analysis<'_> {
             None => self.default_init(ty),
         };
         if let Some(init) = init {
-            self.set_initial(address, init);
+            let span = self.span(unit, decl.range);
+            self.set_initial(address, init, span);
         }
     }
 

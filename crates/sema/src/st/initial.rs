@@ -61,16 +61,16 @@ impl Analysis<'_> {
             .default_init(ty)
             .map_or(0, |init| match self.hir.inits.get(init) {
                 Init::Bits(bits) => *bits,
-                Init::Zero | Init::Struct(_) | Init::Array(_) => 0,
+                Init::Zero | Init::Address(_) | Init::Struct(_) | Init::Array(_) => 0,
             });
-        match self.types.elementary(ty) {
-            Some(El::Real) => Const::Real(f64::from(f32::from_bits(bits as u32))),
-            Some(El::Lreal) => Const::Real(f64::from_bits(bits)),
-            Some(el) if el.range().0 < 0 => {
-                let shift = 64 - el.bits();
-                Const::Int(i128::from(((bits << shift) as i64) >> shift))
-            }
-            Some(_) | None => Const::Int(i128::from(bits)),
+        Const::from_bits(self.constant_type(ty).unwrap_or(El::Ulint), bits)
+    }
+
+    /// The elementary type behind a type whose constants are numbers.
+    pub(crate) fn constant_type(&self, ty: TypeId) -> Option<El> {
+        match self.types.base(ty) {
+            TypeKind::Enum(index) => Some(self.types.enums[*index as usize].base),
+            _ => self.types.elementary(ty),
         }
     }
 
@@ -131,6 +131,9 @@ impl Analysis<'_> {
                 let note = "an array has its values in [ ], a structure in ( )";
                 self.report(Diagnostic::new(Code::E2008, span, message).note(note));
                 None
+            }
+            (TypeKind::Reference(..) | TypeKind::Interface(_), _) => {
+                self.reference_value(scope, expr, ty)
             }
             (TypeKind::Text { .. }, _) => {
                 let value = self.constant(scope, expr, ty)?;

@@ -27,6 +27,7 @@ mod declare;
 mod dialect;
 mod dispatch;
 pub mod elementary;
+mod evaluate;
 mod extended;
 mod globals;
 mod heritage;
@@ -49,6 +50,7 @@ pub mod types;
 
 pub use constant::Const;
 pub use elementary::{El, Family};
+pub use evaluate::Evaluator;
 
 use crate::hir;
 use analysis::{Analysis, Namespace, Words};
@@ -87,15 +89,17 @@ pub fn intern_words(names: &mut Names) {
 const WORDS: [&str; 6] = ["EN", "ENO", "INTERVAL", "SINGLE", "PRIORITY", "BIT"];
 
 /// Decides what the program of some files means. The library's files are trees like others; what
-/// of them is not used is not looked at. The program means nothing if there are errors.
+/// of them is not used is not looked at. Constants that are more than folding are computed by
+/// `evaluator`. The program means nothing if there are errors.
 pub fn analyze(
     library: &[File],
     files: &[File],
     names: &Names,
     options: Options,
+    evaluator: &dyn Evaluator,
     diagnostics: &mut Diagnostics,
 ) -> hir::Program {
-    let mut analysis = Analysis::new(names, options);
+    let mut analysis = Analysis::new(names, options, evaluator);
     for file in library {
         analysis.declare_file(file, NamespaceId::LIBRARY);
     }
@@ -117,8 +121,13 @@ pub fn analyze(
 }
 
 /// The functions of a library with some names, and what these call.
-pub fn library(files: &[File], names: &Names, functions: &[&str]) -> hir::Program {
-    let mut analysis = Analysis::new(names, Options::default());
+pub fn library(
+    files: &[File],
+    names: &Names,
+    functions: &[&str],
+    evaluator: &dyn Evaluator,
+) -> hir::Program {
+    let mut analysis = Analysis::new(names, Options::default(), evaluator);
     for file in files {
         analysis.declare_file(file, NamespaceId::LIBRARY);
     }
@@ -137,7 +146,7 @@ pub fn library(files: &[File], names: &Names, functions: &[&str]) -> hir::Progra
 }
 
 impl<'a> Analysis<'a> {
-    fn new(names: &'a Names, options: Options) -> Self {
+    fn new(names: &'a Names, options: Options, evaluator: &'a dyn Evaluator) -> Self {
         let word = |text| names.find(text).expect("words are interned first");
         let mut types = Types::new();
         let mut elementary_names = FxHashMap::default();
@@ -174,6 +183,7 @@ impl<'a> Analysis<'a> {
                 bit: word("BIT"),
             },
             options,
+            evaluator,
             units: Vec::new(),
             namespaces: vec![global, Namespace::default()],
             types,

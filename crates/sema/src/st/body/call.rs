@@ -161,6 +161,10 @@ impl Body<'_, '_> {
         if let Some(enable) = self.enable(id)
             && !self.skips.contains(&id)
         {
+            if self.constant_only {
+                let message = "a constant is needed here, and EN may skip a call";
+                return self.error(Message::E2030, range, message);
+            }
             return self.enabled_value(id, enable, want);
         }
         if let Some(operand) = self.typed_conversion(callee, arguments, range, want) {

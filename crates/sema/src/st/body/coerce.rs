@@ -75,11 +75,7 @@ impl Body<'_, '_> {
     }
 
     pub(crate) fn const_bits(&mut self, value: &Const, ty: TypeId) -> u64 {
-        let el = match self.an.types.base(ty) {
-            TypeKind::Enum(index) => self.an.types.enums[*index as usize].base,
-            _ => self.an.types.elementary(ty).unwrap_or(El::Ulint),
-        };
-        value.bits(el)
+        value.bits(self.an.constant_type(ty).unwrap_or(El::Ulint))
     }
 
     /// A computed operand in another type, where that needs no asking.

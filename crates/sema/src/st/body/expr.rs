@@ -9,8 +9,16 @@ use iecc_diag::Code as Message;
 
 impl Body<'_, '_> {
     /// Looks at an expression. `want` is the type that its use needs, which literals take; the
-    /// result may still be of another type.
+    /// result may still be of another type. Where only constants are allowed, it is one.
     pub(crate) fn expr(&mut self, id: st::Id<st::Expr>, want: Option<TypeId>) -> Operand {
+        let operand = self.any_expr(id, want);
+        if self.constant_only {
+            return self.known(operand);
+        }
+        operand
+    }
+
+    fn any_expr(&mut self, id: st::Id<st::Expr>, want: Option<TypeId>) -> Operand {
         let arena = self.arena();
         let written = arena[id];
         let range = written.range;

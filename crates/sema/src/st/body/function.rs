@@ -372,11 +372,7 @@ impl Body<'_, '_> {
                 self.store(&place, var.ty, &operand, range);
             }
             None => {
-                let init = match var.initial {
-                    Some(initial) => self.an.initial_value(initial, var.ty),
-                    None => self.an.default_init(var.ty),
-                };
-                if let Some(init) = init {
+                if let Some(init) = self.own_init(var) {
                     let path = self.path_of(&place, range);
                     self.before(StmtKind::Initialise(path, init), range);
                 }
@@ -386,16 +382,8 @@ impl Body<'_, '_> {
     }
 
     fn default_argument(&mut self, var: &Var, range: TextRange) -> ExprId {
-        let init = match var.initial {
-            Some(initial) => self.an.initial_value(initial, var.ty),
-            None => self.an.default_init(var.ty),
-        };
-        let bits = init.map_or(0, |init| match self.an.hir.inits.get(init) {
-            crate::hir::code::Init::Bits(bits) => *bits,
-            _ => 0,
-        });
-        let ty = self.an.scalar(var.ty);
-        self.add_const(bits, ty, range)
+        let init = self.own_init(var);
+        self.init_expr(init, var.ty, range)
     }
 
     /// Copies a string into one of another length.

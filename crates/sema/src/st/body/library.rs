@@ -272,9 +272,6 @@ impl Body<'_, '_> {
             }
             return self.intrinsic(&name, &bound.bindings, operands, eno, range, result);
         }
-        if self.constant_only {
-            return self.error(Message::E2030, range, "a constant is needed here");
-        }
         if operands.len()
             > bound
                 .positions

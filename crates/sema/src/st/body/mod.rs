@@ -12,6 +12,7 @@ mod edge;
 mod expr;
 mod function;
 mod generic;
+mod initial_reference;
 mod intrinsic;
 mod library;
 mod literal;
@@ -61,11 +62,13 @@ pub(crate) struct Body<'b, 'a> {
     /// Control variables of the loops around, innermost last.
     loops: Vec<Option<(Root, Vec<PathStep>)>>,
     /// Statements that have to run before the one that is being looked at.
-    pending: Vec<StmtId>,
+    pub(super) pending: Vec<StmtId>,
     /// Calls whose EN has been looked at.
     skips: HashSet<st::Id<st::Expr>>,
-    /// Whether only constants are allowed; what is not constant is reported at its use.
+    /// Whether only constants are allowed; what is not constant is reported where it stands.
     constant_only: bool,
+    /// How many bodies were wanted before this one.
+    pub(super) mark: usize,
 }
 
 impl<'b, 'a> Body<'b, 'a> {
@@ -80,6 +83,7 @@ impl<'b, 'a> Body<'b, 'a> {
     /// A body without statements.
     fn new(an: &'b mut Analysis<'a>, scope: TypeScope<'b>) -> Self {
         Self {
+            mark: an.wanted.len(),
             an,
             unit: scope.unit,
             namespace: scope.namespace,
@@ -113,7 +117,12 @@ impl<'b, 'a> Body<'b, 'a> {
         self.an.type_name(ty)
     }
 
-    fn error(&mut self, code: Message, range: TextRange, message: impl Into<String>) -> Operand {
+    pub(super) fn error(
+        &mut self,
+        code: Message,
+        range: TextRange,
+        message: impl Into<String>,
+    ) -> Operand {
         let span = self.span(range);
         self.an.error(code, span, message);
         Operand::error(range)
@@ -144,7 +153,12 @@ impl<'b, 'a> Body<'b, 'a> {
         self.add_expr(ExprKind::Const(bits), ty, range)
     }
 
-    fn add_path(&mut self, root: Root, steps: Vec<PathStep>, range: TextRange) -> PathId {
+    pub(super) fn add_path(
+        &mut self,
+        root: Root,
+        steps: Vec<PathStep>,
+        range: TextRange,
+    ) -> PathId {
         let span = self.span(range);
         self.code.paths.push(Path { root, steps, span });
         PathId(self.code.paths.len() as u32 - 1)
@@ -171,7 +185,7 @@ impl<'b, 'a> Body<'b, 'a> {
     }
 
     /// A statement that runs before the one being looked at.
-    fn before(&mut self, kind: StmtKind, range: TextRange) {
+    pub(super) fn before(&mut self, kind: StmtKind, range: TextRange) {
         let stmt = self.add_stmt(kind, range);
         self.pending.push(stmt);
     }

@@ -1,7 +1,7 @@
 //! Names and the ways from them: members, elements, bits, references.
 
 use super::{Body, Operand, OperandKind, Place, Rights};
-use crate::hir::code::{BinaryOp, Conversion, ExprKind, PathStep, Root};
+use crate::hir::code::{BinaryOp, Conversion, ExprKind, LocalId, PathStep, Root};
 use crate::st::constant::Const;
 use crate::st::elementary::El;
 use crate::st::signature::{Def, PouId, Storage, Var};
@@ -135,7 +135,7 @@ impl Body<'_, '_> {
         let var = self.an.pou(pou).vars[index].clone();
         let pou_home = self.an.pou(pou).owner.unwrap_or(pou);
         match &var.storage {
-            Storage::Local => match self.locals.get(index).copied().flatten() {
+            Storage::Local => match self.local_of(index) {
                 Some(local) => {
                     let rights = own_rights(&var);
                     self.place_operand(Root::Local(local), Vec::new(), rights, var.ty, range)
@@ -146,7 +146,7 @@ impl Body<'_, '_> {
                 let rights = own_rights(&var);
                 self.place_operand(Root::Ref(*reference), Vec::new(), rights, var.ty, range)
             }
-            Storage::Field(_) if var.edge.is_some() => match self.locals[index] {
+            Storage::Field(_) if var.edge.is_some() => match self.local_of(index) {
                 Some(local) => {
                     let rights = Rights::OwnInput;
                     self.place_operand(Root::Local(local), Vec::new(), rights, var.ty, range)
@@ -158,6 +158,10 @@ impl Body<'_, '_> {
                 self.instance_variable(this.root, this.steps, &var, false, range)
             }
         }
+    }
+
+    fn local_of(&self, index: usize) -> Option<LocalId> {
+        self.locals.get(index).copied().flatten()
     }
 
     fn not_constant(&mut self, range: TextRange) -> Operand {

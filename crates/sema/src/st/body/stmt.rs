@@ -49,11 +49,15 @@ impl Body<'_, '_> {
                 (_, Some(local)) => Root::Local(local),
                 (_, None) => continue,
             };
-            let init = match var.initial {
-                Some(initial) => self.an.initial_value(initial, var.ty),
-                None => self.an.default_init(var.ty),
-            };
-            self.start(root, init, var.range, body);
+            match var.initial {
+                Some(initial) if self.an.is_address(var.ty) => {
+                    self.start_reference(root, var, initial, body);
+                }
+                _ => {
+                    let init = self.own_init(var);
+                    self.start(root, init, var.range, body);
+                }
+            }
         }
         let result = self
             .result
