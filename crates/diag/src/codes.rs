@@ -177,6 +177,7 @@ codes! {
     E3020 Error "argument has the wrong direction";
     E3021 Error "function does not take these arguments";
     E3022 Error "too few arguments";
+    E3023 Error "property is used against its kind";
     E3040 Error "recursion";
     E3041 Error "loop never ends";
     E3050 Warning "variable is not used";

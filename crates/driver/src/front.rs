@@ -167,6 +167,7 @@ fn check_text(
     let files: Vec<File> = sources.files().iter().map(parse).collect();
     let library = library(map, sources, &mut names);
     st::intern_words(&mut names);
+    st::intern_hidden(&mut names, &files);
     let options = st::Options {
         codesys: options.dialect == Dialect::Codesys,
         entry: options.entry.as_deref().map(|entry| names.intern(entry)),

@@ -72,6 +72,10 @@ pub(crate) struct Analysis<'a> {
     pub type_decls: Vec<TypeDecl>,
     pub pous: Vec<Pou>,
     pub globals: Vec<Global>,
+    /// The hidden names of the accessors of properties.
+    pub accessors: FxHashMap<Symbol, super::hidden::Accessors>,
+    /// Variables of VAR_STAT, by where they are declared.
+    pub statics: FxHashMap<(UnitId, iecc_source::TextRange), GlobalId>,
     /// Lists of global variables and their names.
     pub lists: Vec<(UnitId, Option<Symbol>)>,
     /// Bare enumerators and the enumerations that have them.
@@ -85,6 +89,8 @@ pub(crate) struct Analysis<'a> {
     pub addresses: super::address::Addresses,
     /// The instances of programs, by name.
     pub program_instances: Vec<(Symbol, PouId, hir::TagId)>,
+    /// All instances of each program.
+    pub program_tags: FxHashMap<PouId, Vec<hir::TagId>>,
     /// Instances of library units, by what was bound.
     pub instances: FxHashMap<(PouId, super::signature::Bindings), PouId>,
     /// The bodies that are needed, in the order they came up, and their place in the typed program.

@@ -2,6 +2,7 @@
 //! yet, so the order of declarations does not matter.
 
 use super::analysis::{Analysis, Resolution, TypeDecl, UnitRef};
+use super::hidden::Accessors;
 use super::signature::{Bindings, Def, NamespaceId, Part, Pou, PouId, State, TypeDeclId, UnitId};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, File, Item, Member, ScopeId, UnitKind};
@@ -130,6 +131,7 @@ impl<'a> Analysis<'a> {
             namespace,
             span,
             result: None,
+            result_name: pou.name.name,
             vars: Vec::new(),
             by_name: FxHashMap::default(),
             members: Vec::new(),
@@ -145,25 +147,75 @@ impl<'a> Analysis<'a> {
         if is_internal(&unit.arena[pou.modifiers]) {
             self.hide(namespace, pou.name.name);
         }
+        self.declare_statics(id, pou.sections, self.text(pou.name.name).to_owned());
         for (index, member) in (0..).zip(&unit.arena[pou.members]) {
-            let (modifiers, part) = match member {
-                Member::Method(method) => (method.modifiers, Part::Member(index)),
-                Member::Action(_) => (st::List::EMPTY, Part::Member(index)),
-                // Properties are declared when their accessors are.
-                Member::Property(property) => (property.modifiers, Part::Member(index)),
-            };
             let name = member.name();
-            let mut made = self.pou(whole).clone();
-            made.name = name.name;
-            made.kind = st::PouKind::Function;
-            made.part = part;
-            made.owner = Some(whole);
-            made.span = unit.span(name.range);
-            made.modifiers = unit.arena[modifiers].iter().map(|m| m.kind).collect();
-            made.members = Vec::new();
-            let made = self.add_pou(made);
-            self.pous[whole.index()].members.push((name.name, made));
+            match member {
+                Member::Method(method) => {
+                    let part = Part::Member(index);
+                    self.declare_member(whole, part, name, name.name, &[method.modifiers]);
+                    self.declare_member_statics(whole, name.name, method.sections);
+                }
+                Member::Action(_) => {
+                    self.declare_member(whole, Part::Member(index), name, name.name, &[]);
+                }
+                Member::Property(property) => self.declare_property(whole, index, property),
+            }
         }
+    }
+
+    /// The accessors of a property are methods.
+    fn declare_property(&mut self, whole: PouId, index: u32, property: &st::Property) {
+        let accessors = Accessors {
+            get: self.hidden_name(property.name.name, "GET"),
+            set: self.hidden_name(property.name.name, "SET"),
+        };
+        self.accessors.insert(property.name.name, accessors);
+        let both = [
+            (property.get, Part::Getter(index), accessors.get),
+            (property.set, Part::Setter(index), accessors.set),
+        ];
+        for (accessor, part, name) in both {
+            let Some(accessor) = accessor else { continue };
+            let modifiers = [accessor.modifiers, property.modifiers];
+            self.declare_member(whole, part, property.name, name, &modifiers);
+            self.declare_member_statics(whole, name, accessor.sections);
+        }
+    }
+
+    /// Something with a body that belongs to a unit. The first word about access counts.
+    fn declare_member(
+        &mut self,
+        whole: PouId,
+        part: Part,
+        written: st::Ident,
+        name: Symbol,
+        modifiers: &[st::List<st::Modifier>],
+    ) {
+        let unit = self.unit(self.pou(whole).unit);
+        let mut made = self.pou(whole).clone();
+        made.name = name;
+        made.result_name = written.name;
+        made.kind = st::PouKind::Function;
+        made.part = part;
+        made.owner = Some(whole);
+        made.span = unit.span(written.range);
+        let modifiers = modifiers.iter().flat_map(|list| &unit.arena[*list]);
+        made.modifiers = modifiers.map(|m| m.kind).collect();
+        made.members = Vec::new();
+        let made = self.add_pou(made);
+        self.pous[whole.index()].members.push((name, made));
+    }
+
+    fn declare_member_statics(
+        &mut self,
+        whole: PouId,
+        name: Symbol,
+        sections: st::List<st::VarSection>,
+    ) {
+        let pou = self.pou(whole);
+        let path = format!("{}.{}", self.text(pou.name), self.text(name));
+        self.declare_statics(pou.unit, sections, path);
     }
 
     pub(crate) fn add_pou(&mut self, pou: Pou) -> PouId {

@@ -35,6 +35,7 @@ impl Analysis<'_> {
                 let id = GlobalId(self.globals.len() as u32);
                 self.globals.push(Global {
                     name: ident.name,
+                    path: None,
                     list: None,
                     qualified: false,
                     ty: TypeId::ERROR,

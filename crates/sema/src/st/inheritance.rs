@@ -4,7 +4,7 @@ use super::analysis::Analysis;
 use super::signature::{Part, PouId, Storage, Var};
 use super::types::TypeId;
 use iecc_ast::Symbol;
-use iecc_ast::st::{self, Member, ModifierKind, PouKind, SectionKind, UnitKind};
+use iecc_ast::st::{self, ModifierKind, PouKind, SectionKind, UnitKind};
 use iecc_diag::{Code, Diagnostic};
 
 impl Analysis<'_> {
@@ -59,18 +59,6 @@ impl Analysis<'_> {
             self.check_method_of(id, name, method);
         }
         self.check_all_there(id);
-    }
-
-    fn check_properties(&mut self, id: PouId) {
-        let unit = self.pou(id).unit;
-        let UnitKind::Pou(written) = &self.unit(unit).kind else {
-            return;
-        };
-        for member in &self.unit(unit).arena[written.members] {
-            if let Member::Property(property) = member {
-                self.unsupported(unit, property.name.range, "PROPERTY");
-            }
-        }
     }
 
     fn contradiction(&mut self, id: PouId) {
@@ -178,25 +166,13 @@ impl Analysis<'_> {
         }
     }
 
-    fn written_method(&self, method: PouId) -> Option<st::Method> {
-        let pou = self.pou(method);
-        let unit = self.unit(pou.unit);
-        let (UnitKind::Pou(whole), Part::Member(index)) = (&unit.kind, pou.part) else {
-            return None;
-        };
-        match unit.arena[whole.members][index as usize] {
-            Member::Method(method) => Some(method),
-            Member::Property(_) | Member::Action(_) => None,
-        }
-    }
-
     /// A prototype has no statements.
     fn check_no_statements(&mut self, method: PouId) {
-        let Some(written) = self.written_method(method) else {
+        let Some(body) = self.written_statements(method) else {
             return;
         };
         let unit = self.unit(self.pou(method).unit);
-        if let Some(&first) = unit.arena[written.body].first() {
+        if let Some(&first) = unit.arena[body].first() {
             let span = unit.span(unit.arena[first].range);
             let name = self.text(self.pou(method).name);
             let message = format!("`{name}` is a prototype, which has no statements");
@@ -237,7 +213,7 @@ impl Analysis<'_> {
         let problem = if self.is(other, ModifierKind::Final) {
             let message = format!("`{text}` is FINAL in the base, so nothing can override it");
             Diagnostic::new(Code::E1045, span, message)
-        } else if !overrides {
+        } else if !overrides && !self.options.codesys {
             let message = format!("`{text}` is inherited; a method that replaces it says OVERRIDE");
             Diagnostic::new(Code::E1050, span, message).note("write METHOD … OVERRIDE")
         } else if self.access_word(method) != self.access_word(other) {

@@ -97,6 +97,9 @@ impl Analysis<'_> {
 
     /// What a global variable is called from outside of the program.
     pub(crate) fn global_name(&self, global: &Global) -> String {
+        if let Some(path) = &global.path {
+            return path.clone();
+        }
         let own = self.text(global.name);
         match global.list.filter(|_| global.qualified) {
             Some(list) => format!("{}.{own}", self.text(list)),

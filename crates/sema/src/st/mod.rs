@@ -31,9 +31,11 @@ mod evaluate;
 mod extended;
 mod globals;
 mod heritage;
+mod hidden;
 mod inheritance;
 mod initial;
 mod instance;
+mod kept;
 mod lint;
 mod lists;
 mod namespaces;
@@ -51,6 +53,7 @@ pub mod types;
 pub use constant::Const;
 pub use elementary::{El, Family};
 pub use evaluate::Evaluator;
+pub use hidden::intern_hidden;
 
 use crate::hir;
 use analysis::{Analysis, Namespace, Words};
@@ -191,6 +194,8 @@ impl<'a> Analysis<'a> {
             pous: Vec::new(),
             globals: Vec::new(),
             lists: Vec::new(),
+            accessors: FxHashMap::default(),
+            statics: FxHashMap::default(),
             enumerators: FxHashMap::default(),
             elementary_names,
             pou_of_unit: FxHashMap::default(),
@@ -198,6 +203,7 @@ impl<'a> Analysis<'a> {
             hir: hir::Program::empty(),
             addresses: address::Addresses::default(),
             program_instances: Vec::new(),
+            program_tags: FxHashMap::default(),
             instances: FxHashMap::default(),
             wanted: Vec::new(),
             families: heritage::Families::default(),

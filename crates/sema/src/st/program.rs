@@ -105,7 +105,24 @@ impl Analysis<'_> {
         let storage = self.storage(ty);
         let init = self.default_init(ty);
         let span = self.pou(program).span;
-        self.add_tag(name, storage, hir::View::Number, init, Some(span))
+        let tag = self.add_tag(name, storage, hir::View::Number, init, Some(span));
+        self.program_tags.entry(program).or_default().push(tag);
+        tag
+    }
+
+    /// The instance that the name of a program stands for (CODESYS): the one that a task runs, or one
+    /// made for it. `None` if there are several.
+    pub(crate) fn named_program(&mut self, program: PouId) -> Option<TagId> {
+        match self.program_tags.get(&program).map(Vec::as_slice) {
+            Some([tag]) => Some(*tag),
+            Some([_, ..]) => None,
+            Some([]) | None => {
+                let name = self.text(self.pou(program).name).to_owned();
+                let tag = self.program_instance(program, &name);
+                self.check_places(program, tag, &name, &[]);
+                Some(tag)
+            }
+        }
     }
 
     pub(crate) fn add_tag(

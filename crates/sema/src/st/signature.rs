@@ -98,6 +98,8 @@ pub struct Pou {
     pub span: Span,
     /// Its result.
     pub result: Option<TypeId>,
+    /// What its body calls the result: its name, or that of the property it reads.
+    pub result_name: Symbol,
     /// Its variables in order, inherited ones not included.
     pub vars: Vec<Var>,
     /// Their positions.
@@ -196,6 +198,8 @@ pub struct Spot {
 pub struct Global {
     /// Its name.
     pub name: Symbol,
+    /// What it is called from outside of the program, if not by its name.
+    pub path: Option<String>,
     /// The list it is in, if that has a name.
     pub list: Option<Symbol>,
     /// Whether it is named with its list alone.
@@ -231,6 +235,14 @@ impl Pou {
     /// The variables of a section, in order.
     pub fn section(&self, section: SectionKind) -> impl Iterator<Item = &Var> + '_ {
         self.vars.iter().filter(move |var| var.section == section)
+    }
+
+    /// The position of a member among those that are written.
+    pub fn part_index(&self) -> Option<u32> {
+        match self.part {
+            Part::Whole => None,
+            Part::Member(index) | Part::Getter(index) | Part::Setter(index) => Some(index),
+        }
     }
 
     /// Whether it has instances.

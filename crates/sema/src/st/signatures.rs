@@ -52,6 +52,7 @@ impl Analysis<'_> {
             self.complete(base);
             self.inherit_in_outs(id, base);
         }
+        self.value_of_setter(id);
         if let Some(written) = self.written_pou(id) {
             let scope = self.pou_scope(id);
             let scope = scope.as_scope();
@@ -61,6 +62,9 @@ impl Analysis<'_> {
             for section in sections {
                 self.section(id, written.kind, section);
             }
+        }
+        if self.pou(id).has_instances() {
+            self.keep_for_methods(id);
         }
         self.place_vars(id);
         self.pous[id.index()].state = State::Done;
@@ -130,11 +134,16 @@ impl Analysis<'_> {
                     | ModifierKind::Internal
             )
         });
-        self.allowed_section(unit_id, kind, section);
+        self.allowed_section(id, kind, section);
         let Declarations::Variables(variables) = section.declarations else {
             return;
         };
         self.modifiers_go_together(unit_id, Some(kind), section);
+        // Their types are those of what keeps them.
+        if matches!(section.kind, SectionKind::Static | SectionKind::Instance) {
+            self.kept_section(id, variables, section.kind, constant);
+            return;
+        }
         for decl in &unit.arena[variables] {
             let owned = self.pou_scope(id);
             let mut ty = self.variable_type(owned.as_scope(), decl);
@@ -177,6 +186,38 @@ impl Analysis<'_> {
         }
     }
 
+    /// Variables of VAR_STAT and VAR_INST.
+    fn kept_section(
+        &mut self,
+        id: PouId,
+        variables: st::List<st::VarDecl>,
+        section: SectionKind,
+        constant: bool,
+    ) {
+        let unit = self.pou(id).unit;
+        let arena = &self.unit(unit).arena;
+        for ident in arena[variables].iter().flat_map(|decl| &arena[decl.names]) {
+            let mut var = Var {
+                name: ident.name,
+                range: ident.range,
+                section,
+                ty: TypeId::ERROR,
+                initial: None,
+                constant,
+                edge: None,
+                access: None,
+                storage: Storage::Local,
+                partly: false,
+            };
+            if section == SectionKind::Static {
+                self.own_static(unit, &mut var);
+            } else {
+                self.own_kept(id, &mut var);
+            }
+            self.add_var(id, var);
+        }
+    }
+
     /// Whether an input may have R_EDGE or F_EDGE.
     fn edge_fits(
         &mut self,
@@ -204,21 +245,15 @@ impl Analysis<'_> {
         true
     }
 
-    fn allowed_section(
-        &mut self,
-        unit: super::signature::UnitId,
-        kind: PouKind,
-        section: &st::VarSection,
-    ) {
+    fn allowed_section(&mut self, id: PouId, kind: PouKind, section: &st::VarSection) {
         use SectionKind as S;
+        let (unit, in_method) = (self.pou(id).unit, self.pou(id).owner.is_some());
         let allowed = match (kind, section.kind) {
             (PouKind::Interface, _) => false,
             (PouKind::Class, kind) => matches!(kind, S::Var | S::External),
             (_, S::Var | S::Temp | S::Input | S::Output | S::InOut | S::External) => true,
-            (_, S::Static | S::Instance) => {
-                self.unsupported(unit, section.range, section.kind.as_str());
-                return;
-            }
+            (_, S::Static) => true,
+            (_, S::Instance) => in_method,
             (PouKind::Program, S::Global | S::Access) => true,
             (_, S::Global | S::Access | S::Config) => false,
         };

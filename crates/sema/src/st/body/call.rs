@@ -255,6 +255,9 @@ impl Body<'_, '_> {
             match defs.first() {
                 None => self.unknown_function(name, range),
                 Some(Def::Global(_)) => return self.instance_callee(id),
+                Some(Def::Pou(pou)) if self.an.pou(*pou).kind == PouKind::Program => {
+                    return self.instance_callee(id);
+                }
                 Some(_) => {
                     let message = format!("`{}` is no function", self.text(name));
                     self.error(Message::E1018, range, message);

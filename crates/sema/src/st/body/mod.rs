@@ -9,6 +9,7 @@ mod coerce;
 mod connect;
 mod convert;
 mod edge;
+mod element;
 mod expr;
 mod function;
 mod generic;
@@ -20,6 +21,8 @@ mod object;
 mod operand;
 mod operator;
 mod place;
+mod program;
+mod property;
 mod reference;
 mod stmt;
 mod time;
@@ -235,7 +238,7 @@ impl Body<'_, '_> {
         self.code.params = shape.params.len() as u32;
         if let Some(result) = pou.result {
             let ty = self.an.storage(result);
-            let name = self.text(pou.name).to_owned();
+            let name = self.text(pou.result_name).to_owned();
             if shape.result_by_ref {
                 self.result_ref = Some(self.code.refs.len() as u32);
                 self.add_ref(name, ty);

@@ -143,7 +143,9 @@ impl Body<'_, '_> {
     /// A variable of the instance that the body works on.
     pub(super) fn member_of_this(&mut self, name: Symbol, range: TextRange) -> Option<Operand> {
         let home = self.home()?;
-        let (of, index) = self.an.instance_var(home, name)?;
+        let Some((of, index)) = self.an.instance_var(home, name) else {
+            return self.own_property(name, range);
+        };
         let var = self.an.pou(of).vars[index].clone();
         let in_method = self
             .pou

@@ -53,6 +53,8 @@ pub(crate) enum Rights {
     OtherOutput,
     /// It is an intermediate result.
     Temporary,
+    /// It is the value of a property, a copy.
+    Value,
 }
 
 impl Operand {

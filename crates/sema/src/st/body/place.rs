@@ -1,13 +1,13 @@
 //! Names and the ways from them: members, elements, bits, references.
 
+use super::property::Target;
 use super::{Body, Operand, OperandKind, Place, Rights};
-use crate::hir::code::{BinaryOp, Conversion, ExprKind, LocalId, PathStep, Root};
+use crate::hir::code::{LocalId, PathStep, Root};
 use crate::st::constant::Const;
-use crate::st::elementary::El;
 use crate::st::signature::{Def, PouId, Storage, Var};
 use crate::st::types::{ReferenceKind, TypeId, TypeKind};
 use iecc_ast::Symbol;
-use iecc_ast::st::{self, AddressSize, ExprKind as Written, Part, PouKind, SectionKind};
+use iecc_ast::st::{self, ExprKind as Written, PouKind, SectionKind};
 use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::TextRange;
 
@@ -72,6 +72,9 @@ impl Body<'_, '_> {
         let text = self.text(name);
         match def {
             Some(Def::Global(id)) => self.global(id, name, range),
+            Some(Def::Pou(pou)) if self.an.pou(pou).kind == PouKind::Program => {
+                self.program(pou, range)
+            }
             Some(Def::Pou(_)) => {
                 let message = format!("`{text}` is called with parentheses");
                 self.error(Message::E3004, range, message)
@@ -114,7 +117,7 @@ impl Body<'_, '_> {
             return Some(self.own_variable(pou, index as usize, range));
         }
         let signature = self.an.pou(pou);
-        if signature.name == name
+        if signature.result_name == name
             && let Some(ty) = signature.result
         {
             return Some(self.result_variable(ty, range));
@@ -345,10 +348,19 @@ impl Body<'_, '_> {
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
-        if let Some(operand) = self.qualified(base, member, range, want) {
-            return operand;
+        match self.member_target(base, member, range, want) {
+            Target::Place(operand) => operand,
+            Target::Property(property) => self.read_property(property, range),
         }
-        let base = self.place(base, None);
+    }
+
+    /// `base.member`, of what was looked at.
+    pub(super) fn member_of(
+        &mut self,
+        base: Operand,
+        member: st::Ident,
+        range: TextRange,
+    ) -> Operand {
         if base.is_error() {
             return base;
         }
@@ -400,7 +412,7 @@ impl Body<'_, '_> {
     }
 
     /// `namespace.name` and `Enumeration.Value`; `None` if the base is something else.
-    fn qualified(
+    pub(super) fn qualified(
         &mut self,
         base: st::Id<st::Expr>,
         member: st::Ident,
@@ -460,7 +472,7 @@ impl Body<'_, '_> {
         let mut at = Some(pou);
         while let Some(id) = at {
             let signature = self.an.pou(id);
-            if signature.by_name.contains_key(&name) {
+            if signature.by_name.contains_key(&name) || self.an.property(id, name).is_some() {
                 return true;
             }
             at = signature.owner.or(signature.extends.first().copied());
@@ -523,196 +535,6 @@ impl Body<'_, '_> {
         let diagnostic = Diagnostic::new(Message::E1017, self.span(range), message);
         self.report(diagnostic.note(format!("write {}", types.join(" or "))));
         Operand::error(range)
-    }
-
-    /// `base[i, j]`, of arrays and strings.
-    fn index(
-        &mut self,
-        base: st::Id<st::Expr>,
-        indices: st::List<st::Id<st::Expr>>,
-        range: TextRange,
-    ) -> Operand {
-        let mut at = self.place(base, None);
-        if let TypeKind::Array {
-            dimensions,
-            element,
-        } = self.an.types.base(at.ty)
-            && (indices.len() < dimensions.len()
-                || indices.len() > dimensions.len() && self.an.types.is_scalar(*element))
-        {
-            let (needed, given) = (dimensions.len(), indices.len());
-            let message =
-                format!("the array has {needed} dimensions but {given} subscripts are given");
-            at = self.error(Message::E2004, range, message);
-        }
-        for &index in &self.arena()[indices] {
-            if at.is_error() {
-                // Mistakes in the other subscripts are still reported.
-                self.expr(index, None);
-                continue;
-            }
-            at = self.element(at, index, range);
-        }
-        Operand { range, ..at }
-    }
-
-    /// One element of an array, or one character of a string.
-    fn element(&mut self, base: Operand, index: st::Id<st::Expr>, range: TextRange) -> Operand {
-        let OperandKind::Place(place) = &base.kind else {
-            let message = format!("{} has no elements", self.type_name(base.ty));
-            return self.error(Message::E2031, base.range, message);
-        };
-        let (root, mut steps, rights) = (place.root, place.steps.clone(), place.rights);
-        match self.an.types.base(base.ty).clone() {
-            TypeKind::Array {
-                dimensions,
-                element,
-            } => {
-                let (first, inner) = dimensions.split_first().expect("at least one dimension");
-                let Some(step) = self.subscript(index, *first) else {
-                    return Operand::error(range);
-                };
-                steps.push(step);
-                let ty = if inner.is_empty() {
-                    element
-                } else {
-                    self.an.types.intern(TypeKind::Array {
-                        dimensions: inner.into(),
-                        element,
-                    })
-                };
-                self.place_operand(root, steps, rights, ty, range)
-            }
-            TypeKind::Text { wide, length } => {
-                let index_range = self.arena()[index].range;
-                let operand = self.expr(index, None);
-                if operand.is_error() || !self.integer_index(&operand) {
-                    return Operand::error(range);
-                }
-                if let Some(Const::Int(value)) = operand.as_const()
-                    && !(1..=i128::from(length)).contains(value)
-                {
-                    let message = format!("position {value} is not between 1 and {length}");
-                    return self.error(Message::E2002, index_range, message);
-                }
-                let checked = self.unchecked();
-                let value = self.raw(&operand);
-                steps.push(PathStep::Character { value, checked });
-                let el = if wide { El::Wchar } else { El::Char };
-                self.place_operand(root, steps, rights, TypeId::of(el), range)
-            }
-            _ => {
-                let message = format!("{} has no elements", self.type_name(base.ty));
-                self.error(Message::E2031, base.range, message)
-            }
-        }
-    }
-
-    /// The step to an element.
-    fn subscript(&mut self, index: st::Id<st::Expr>, (low, high): (i64, i64)) -> Option<PathStep> {
-        let operand = self.expr(index, None);
-        if operand.is_error() || !self.integer_index(&operand) {
-            return None;
-        }
-        if let Some(Const::Int(value)) = operand.as_const() {
-            let value = *value;
-            if !(i128::from(low)..=i128::from(high)).contains(&value) {
-                let message = format!("subscript {value} is not between {low} and {high}");
-                self.error(Message::E2002, operand.range, message);
-                return None;
-            }
-            return Some(PathStep::Index((value - i128::from(low)) as u32));
-        }
-        let inside = match self.an.types.base(operand.ty) {
-            TypeKind::Subrange {
-                low: first,
-                high: last,
-                ..
-            } => i128::from(low) <= *first && *last <= i128::from(high),
-            TypeKind::Elementary(el) if el.is_int() => {
-                let (first, last) = el.range();
-                i128::from(low) <= first && last <= i128::from(high)
-            }
-            _ => false,
-        };
-        let checked = inside || self.unchecked();
-        let value = self.raw(&operand);
-        Some(PathStep::IndexBy {
-            value,
-            low,
-            checked,
-        })
-    }
-
-    fn integer_index(&mut self, operand: &Operand) -> bool {
-        let ty = operand.ty;
-        if ty == TypeId::UNTYPED_INT || self.an.types.elementary(ty).is_some_and(El::is_int) {
-            return true;
-        }
-        let message = format!("a subscript is an integer, not {}", self.type_name(ty));
-        self.error(Message::E2032, operand.range, message);
-        false
-    }
-
-    /// Whether the unit is library code that says its subscripts are right.
-    fn unchecked(&self) -> bool {
-        self.an.is_library(self.unit)
-            && self
-                .an
-                .unit(self.unit)
-                .pragmas
-                .iter()
-                .any(|p| p.text.contains("unchecked"))
-    }
-
-    /// `base.%B1`, `base.3`.
-    fn part(&mut self, base: st::Id<st::Expr>, part: Part, range: TextRange) -> Operand {
-        let base = self.place(base, None);
-        if base.is_error() {
-            return base;
-        }
-        let Some(el) = self.an.types.elementary(base.ty).filter(|el| {
-            (el.is_bits() && *el != El::Bool) || (self.an.options.codesys && el.is_int())
-        }) else {
-            let message = format!("{} has no bits that have a name", self.type_name(base.ty));
-            return self.error(Message::E2033, range, message);
-        };
-        let (count, ty) = match part.size {
-            AddressSize::Bit => (1, El::Bool),
-            AddressSize::Byte => (8, El::Byte),
-            AddressSize::Word => (16, El::Word),
-            AddressSize::DoubleWord => (32, El::Dword),
-            AddressSize::LongWord => (64, El::Lword),
-        };
-        let first = u64::from(part.index) * u64::from(count);
-        if first + u64::from(count) > u64::from(el.bits()) || count == el.bits() {
-            let message = format!("{} has no such part", el.name());
-            return self.error(Message::E2003, range, message);
-        }
-        match &base.kind {
-            OperandKind::Place(place) => {
-                let (root, mut steps, rights) = (place.root, place.steps.clone(), place.rights);
-                steps.push(PathStep::Bits {
-                    first: first as u32,
-                    count,
-                });
-                self.place_operand(root, steps, rights, TypeId::of(ty), range)
-            }
-            OperandKind::Const(Const::Int(value)) => {
-                let value = (value >> first) & ((1 << count) - 1);
-                Operand::constant(Const::Int(value), TypeId::of(ty), range)
-            }
-            OperandKind::Value(value) => {
-                let (value, storage) = (*value, el.storage());
-                let by = self.add_const(first, crate::hir::Elementary::Udint, range);
-                let kind = ExprKind::Binary(BinaryOp::ShiftRight, value, by);
-                let value = self.add_expr(kind, storage, range);
-                let kind = ExprKind::Convert(Conversion::Bits, value);
-                let value = self.add_expr(kind, ty.storage(), range);
-                Operand::value(value, TypeId::of(ty), range)
-            }
-            OperandKind::Const(_) | OperandKind::Error => Operand::error(range),
-        }
     }
 
     /// `base^`.

@@ -16,6 +16,9 @@ impl Body<'_, '_> {
         if matches!(place.steps.last(), Some(PathStep::Bits { .. })) {
             return Some("part of a bit string has no reference");
         }
+        if place.rights == Rights::Value {
+            return Some("the value of a property is a copy, which nothing can refer to");
+        }
         if place.rights == Rights::Constant {
             return Some("a constant has no reference");
         }

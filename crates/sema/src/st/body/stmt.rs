@@ -1,5 +1,6 @@
 //! Statements.
 
+use super::property::Target;
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{Block, ExprId, ExprKind, Root, StmtKind};
 use crate::st::constant::Const;
@@ -233,7 +234,13 @@ impl Body<'_, '_> {
             self.special_assign(target, op, value, range);
             return;
         }
-        let place = self.place(target, None);
+        let place = match self.assign_target(target) {
+            Target::Place(place) => place,
+            Target::Property(property) => {
+                self.write_property(property, value, range);
+                return;
+            }
+        };
         let want = (!place.is_error()).then_some(place.ty);
         let value = self.expr(value, want);
         let Some(to) = self.writable(&place) else {
@@ -291,11 +298,11 @@ impl Body<'_, '_> {
             return None;
         }
         let OperandKind::Place(place) = &operand.kind else {
-            self.error(
-                Message::E2006,
-                operand.range,
-                "a constant cannot be changed",
-            );
+            let (code, why) = match operand.kind {
+                OperandKind::Value(_) => (Message::E3006, "this is a value, not a variable"),
+                _ => (Message::E2006, "a constant cannot be changed"),
+            };
+            self.error(code, operand.range, why);
             return None;
         };
         let place = place.clone();
@@ -309,10 +316,11 @@ impl Body<'_, '_> {
             Rights::Constant => "this is a constant",
             Rights::OwnInput => "a unit cannot change its own inputs",
             Rights::OtherOutput => "an output can be changed by its block only",
+            Rights::Value => "the value of a property is a copy; only as a whole it is assigned",
         };
         let code = match place.rights {
             Rights::Constant => Message::E2006,
-            Rights::OwnInput | Rights::OtherOutput => Message::E3006,
+            Rights::OwnInput | Rights::OtherOutput | Rights::Value => Message::E3006,
             Rights::All | Rights::Temporary => Message::E3007,
         };
         self.error(code, operand.range, why);

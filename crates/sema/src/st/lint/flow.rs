@@ -26,7 +26,7 @@ impl Analysis<'_> {
         if pou.result.is_none() || is_abstract(pou) || matches!(pou.part, Part::Setter(_)) {
             return;
         }
-        let (unit, name, span) = (pou.unit, pou.name, pou.span);
+        let (unit, name, span) = (pou.unit, pou.result_name, pou.span);
         let arena = &self.unit(unit).arena;
         let named = |expr: &st::Expr| expr.kind == ExprKind::Name(name);
         if arena.all::<st::Expr>().iter().any(named) {

@@ -65,13 +65,23 @@ impl<'a> Analysis<'a> {
 
     /// The statements of a unit or member, if it has any.
     pub(crate) fn written_body(&self, id: PouId) -> Option<st::Block> {
+        let UnitKind::Pou(whole) = &self.unit(self.pou(id).unit).kind else {
+            return None;
+        };
+        if whole.kind == PouKind::Interface {
+            return None;
+        }
+        self.written_statements(id)
+    }
+
+    /// As `written_body`, also where statements must not stand.
+    pub(crate) fn written_statements(&self, id: PouId) -> Option<st::Block> {
         let pou = self.pou(id);
         let unit = self.unit(pou.unit);
         let UnitKind::Pou(whole) = &unit.kind else {
             return None;
         };
         match pou.part {
-            _ if whole.kind == PouKind::Interface => None,
             Part::Whole => Some(whole.body),
             Part::Member(index) | Part::Getter(index) | Part::Setter(index) => {
                 member_body(&unit.arena[whole.members][index as usize], pou)

@@ -37,7 +37,21 @@ impl Analysis<'_> {
                 }
             }
         }
+        if self.options.codesys {
+            self.names_of_members(&mut names);
+        }
         names
+    }
+
+    /// Names behind a dot: in CODESYS all variables of an instance are seen from outside.
+    fn names_of_members(&self, names: &mut FxHashSet<Symbol>) {
+        for unit in &self.units[self.first_user_unit as usize..] {
+            for expr in unit.unit.arena.all::<st::Expr>() {
+                if let ExprKind::Member { member, .. } = expr.kind {
+                    names.insert(member.name);
+                }
+            }
+        }
     }
 
     /// Warns of variables of a unit and its members.

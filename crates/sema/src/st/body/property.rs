@@ -1,0 +1,242 @@
+//! Properties (CODESYS): what looks like a variable is read by a call of its GET and assigned by a
+//! call of its SET. Which of them runs is chosen as for other methods. What is read is a copy, so
+//! nothing in it can be changed.
+
+use super::call::Callee;
+use super::{Body, Operand, OperandKind, Rights};
+use crate::st::hidden::Property;
+use crate::st::signature::PouId;
+use crate::st::types::{ReferenceKind, TypeId, TypeKind};
+use iecc_ast::Symbol;
+use iecc_ast::st::{self, ExprKind as Written};
+use iecc_diag::Code as Message;
+use iecc_source::TextRange;
+
+/// What a path leads to.
+pub(super) enum Target {
+    Place(Operand),
+    Property(PropertyOf),
+}
+
+/// A property of something.
+pub(super) struct PropertyOf {
+    name: st::Ident,
+    property: Property,
+    of: Owner,
+}
+
+/// Whose property it is.
+enum Owner {
+    /// That of the instance the body works on.
+    This,
+    /// Of what the instance extends.
+    Super,
+    /// Of an instance, or of what an interface stands for.
+    Other(Operand),
+}
+
+#[derive(Clone, Copy)]
+enum Access {
+    Get,
+    Set,
+}
+
+impl Body<'_, '_> {
+    /// What `base.member` leads to.
+    pub(super) fn member_target(
+        &mut self,
+        base: st::Id<st::Expr>,
+        member: st::Ident,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Target {
+        if let Some(operand) = self.qualified(base, member, range, want) {
+            return Target::Place(operand);
+        }
+        let base = self.pointed_self(base);
+        if matches!(self.arena()[base].kind, Written::Super)
+            && let Some(property) = self.super_property(member)
+        {
+            return Target::Property(property);
+        }
+        let base = self.place(base, None);
+        match self.property_in(&base, member.name) {
+            Some(property) => Target::Property(PropertyOf {
+                name: member,
+                property,
+                of: Owner::Other(base),
+            }),
+            None => Target::Place(self.member_of(base, member, range)),
+        }
+    }
+
+    fn super_property(&self, member: st::Ident) -> Option<PropertyOf> {
+        let base = self.an.base_of(self.home()?)?;
+        let property = self.an.property(base, member.name)?;
+        Some(PropertyOf {
+            name: member,
+            property,
+            of: Owner::Super,
+        })
+    }
+
+    /// The property of what an operand is, unless a variable has the name.
+    fn property_in(&self, base: &Operand, name: Symbol) -> Option<Property> {
+        match *self.an.types.base(base.ty) {
+            TypeKind::Instance(of) if self.an.instance_var(of, name).is_none() => {
+                self.an.property(of, name)
+            }
+            TypeKind::Interface(of) => self.an.property(of, name),
+            _ => None,
+        }
+    }
+
+    /// A property named alone.
+    pub(super) fn own_property(&mut self, name: Symbol, range: TextRange) -> Option<Operand> {
+        let property = self.own_property_named(name, range)?;
+        Some(self.read_property(property, range))
+    }
+
+    fn own_property_named(&self, name: Symbol, range: TextRange) -> Option<PropertyOf> {
+        let property = self.an.property(self.home()?, name)?;
+        Some(PropertyOf {
+            name: st::Ident { name, range },
+            property,
+            of: Owner::This,
+        })
+    }
+
+    /// What an assignment goes to.
+    pub(super) fn assign_target(&mut self, target: st::Id<st::Expr>) -> Target {
+        let written = self.arena()[target];
+        let found = match written.kind {
+            Written::Name(name) if !self.is_variable(name) => self
+                .own_property_named(name, written.range)
+                .map(Target::Property),
+            Written::Member { base, member } => {
+                Some(self.member_target(base, member, written.range, None))
+            }
+            _ => None,
+        };
+        match found {
+            // A reference that is read is what it stands for.
+            Some(Target::Property(property)) if self.gives_a_variable(&property) => {
+                let read = self.read_property(property, written.range);
+                Target::Place(read)
+            }
+            Some(found) => found,
+            None => Target::Place(self.place(target, None)),
+        }
+    }
+
+    /// Whether the unit has a variable or a result with this name.
+    fn is_variable(&self, name: Symbol) -> bool {
+        let Some(pou) = self.pou else { return true };
+        let own = self.an.pou(pou);
+        let result = own.result.is_some() && own.result_name == name;
+        let inherited = || {
+            let home = self.home()?;
+            self.an.instance_var(home, name)
+        };
+        own.by_name.contains_key(&name) || result || inherited().is_some()
+    }
+
+    /// Whether a property gives a reference and nothing else.
+    fn gives_a_variable(&mut self, property: &PropertyOf) -> bool {
+        let Property {
+            get: Some(get),
+            set: None,
+        } = property.property
+        else {
+            return false;
+        };
+        self.an.complete(get);
+        let result = self.an.pou(get).result.map(|ty| self.an.types.base(ty));
+        matches!(
+            result,
+            Some(TypeKind::Reference(ReferenceKind::Implicit, _))
+        )
+    }
+
+    /// Reads a property.
+    pub(super) fn read_property(&mut self, property: PropertyOf, range: TextRange) -> Operand {
+        if self.constant_only {
+            return self.error(Message::E2030, range, "a constant is needed here");
+        }
+        let name = property.name;
+        let Some(callee) = self.accessor(property, Access::Get) else {
+            return Operand::error(range);
+        };
+        let Callee::Method(target) = callee else {
+            return Operand::error(name.range);
+        };
+        self.an.complete(target.signature);
+        let read = self.finish_call(target, Vec::new(), Vec::new(), None, range);
+        self.as_value(read)
+    }
+
+    /// The result of a call as what it is for the user: a reference stands for its target.
+    pub(super) fn as_value(&mut self, read: Operand) -> Operand {
+        if read.is_error() {
+            return read;
+        }
+        let range = read.range;
+        if let TypeKind::Reference(ReferenceKind::Implicit, target) = *self.an.types.base(read.ty) {
+            let held = self.hold(read);
+            return self.follow(&held, target, range);
+        }
+        match read.kind {
+            OperandKind::Place(mut place) => {
+                place.rights = Rights::Value;
+                Operand {
+                    kind: OperandKind::Place(place),
+                    ..read
+                }
+            }
+            kind => Operand { kind, ..read },
+        }
+    }
+
+    /// Assigns a property.
+    pub(super) fn write_property(
+        &mut self,
+        property: PropertyOf,
+        value: st::Id<st::Expr>,
+        range: TextRange,
+    ) {
+        let Some(Callee::Method(target)) = self.accessor(property, Access::Set) else {
+            self.expr(value, None);
+            return;
+        };
+        self.an.complete(target.signature);
+        let Some(var) = self.an.pou(target.signature).vars.first().cloned() else {
+            return;
+        };
+        let value = self.expr(value, Some(var.ty));
+        self.finish_call(target, vec![(var, value)], Vec::new(), None, range);
+    }
+
+    /// The accessor that runs; a message if there is none.
+    fn accessor(&mut self, property: PropertyOf, access: Access) -> Option<Callee> {
+        let PropertyOf { name, property, of } = property;
+        let (found, word, what): (Option<PouId>, _, _) = match access {
+            Access::Get => (property.get, "GET", "read"),
+            Access::Set => (property.set, "SET", "assigned"),
+        };
+        let Some(found) = found else {
+            let text = self.text(name.name);
+            let message = format!("property `{text}` has no {word}, so it cannot be {what}");
+            self.error(Message::E3023, name.range, message);
+            return None;
+        };
+        let method = st::Ident {
+            name: self.an.pou(found).name,
+            range: name.range,
+        };
+        match of {
+            Owner::This => self.own_method(method.name, name.range),
+            Owner::Super => Some(self.super_method(method, name.range)),
+            Owner::Other(operand) => self.method_callee(&operand, method),
+        }
+    }
+}
