@@ -131,6 +131,8 @@ impl Slicer<'_, '_> {
             Kind::EndNamespace => true,
             Kind::VarGlobal | Kind::VarConfig => matches!(inside, None | Some(Kind::Type)),
             Kind::Using => inside.is_none(),
+            // They are keywords only where they can be nothing else.
+            Kind::Test | Kind::Setup | Kind::Teardown => true,
             _ => false,
         }
     }
@@ -231,15 +233,6 @@ fn closes(opener: Kind, kind: Kind) -> bool {
     match opener {
         Kind::Using => kind == Kind::Semicolon,
         Kind::VarGlobal | Kind::VarConfig => kind == Kind::EndVar,
-        _ => matches!(
-            kind,
-            Kind::EndFunction
-                | Kind::EndFunctionBlock
-                | Kind::EndProgram
-                | Kind::EndClass
-                | Kind::EndInterface
-                | Kind::EndType
-                | Kind::EndConfiguration
-        ),
+        _ => kind.closes_unit(),
     }
 }

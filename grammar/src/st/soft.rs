@@ -31,6 +31,7 @@ fn decide_one(list: &mut [Token], index: usize, keyword: Kind, open: &mut Open) 
         before: neighbour(list[..index].iter().rev()),
         after: neighbour(list[index + 1..].iter()),
         touches_equal: touches_equal(list, index),
+        begins_unit: begins_unit(&list[..index]),
     };
     if open.is_keyword(keyword, &around) {
         open.count(keyword);
@@ -45,6 +46,8 @@ struct Around {
     after: Option<Kind>,
     /// Whether `=` follows without white space.
     touches_equal: bool,
+    /// Whether a unit has ended before it, or the file begins.
+    begins_unit: bool,
 }
 
 fn neighbour<'t>(tokens: impl Iterator<Item = &'t Token>) -> Option<Kind> {
@@ -57,11 +60,19 @@ fn touches_equal(list: &[Token], index: usize) -> bool {
         .is_some_and(|next| next.kind == Kind::Equal && next.start == list[index].end)
 }
 
+fn begins_unit(before: &[Token]) -> bool {
+    let kinds = before.iter().rev().map(|token| token.kind);
+    let mut kinds = kinds.filter(|kind| !kind.is_trivia()).peekable();
+    let closed = kinds.next_if_eq(&Kind::Semicolon).is_some();
+    kinds.next().map_or(!closed, Kind::closes_unit)
+}
+
 /// What is open whose words count only inside.
 #[derive(Default)]
 struct Open {
     properties: u32,
     unions: u32,
+    tests: u32,
 }
 
 impl Open {
@@ -97,12 +108,23 @@ impl Open {
             Kind::EndGet | Kind::EndSet => self.properties > 0 && !named,
             // `RESOURCE name ON name`; two names never stand side by side elsewhere.
             Kind::On => before(&[Kind::Word]) && after(&[Kind::Word]),
+            Kind::Test => after(&[Kind::String, Kind::OpenString]),
+            Kind::Setup | Kind::Teardown => {
+                let modified = around.before.is_some_and(Kind::is_modifier);
+                let holds = around.after.is_some_and(Kind::opens_section);
+                around.begins_unit || holds && !named && !modified
+            }
+            Kind::EndTest | Kind::EndSetup | Kind::EndTeardown => self.tests > 0 && !named,
+            Kind::Mock | Kind::MockFunction => !named && after(&[Kind::Word]),
+            Kind::Returns => before(&[Kind::Word]),
             _ => unreachable!("{kind:?} is not soft"),
         }
     }
 
     fn count(&mut self, kind: Kind) {
-        if kind == Kind::Property {
+        if kind.opens_test() {
+            self.tests += 1;
+        } else if kind == Kind::Property {
             self.properties += 1;
         } else if kind == Kind::EndProperty {
             self.properties -= 1;

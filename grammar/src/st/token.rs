@@ -27,7 +27,7 @@ enum Words {
     /// A keyword, but in CODESYS only where the words around it leave nothing else.
     SoftInCodesys,
     /// A keyword where the words around it leave nothing else, else a name, in all dialects:
-    /// words of CODESYS, and some that are names of parameters as well.
+    /// words of CODESYS and of tests, and some that are names of parameters as well.
     Soft,
 }
 
@@ -262,6 +262,16 @@ kinds! {
     Transition "TRANSITION" Chart,
     EndTransition "END_TRANSITION" Chart,
     From "FROM" Chart,
+
+    Test "TEST" Soft,
+    EndTest "END_TEST" Soft,
+    Setup "SETUP" Soft,
+    EndSetup "END_SETUP" Soft,
+    Teardown "TEARDOWN" Soft,
+    EndTeardown "END_TEARDOWN" Soft,
+    Mock "MOCK" Soft,
+    MockFunction "MOCK_FUNCTION" Soft,
+    Returns "RETURNS" Soft,
 }
 
 impl Kind {
@@ -328,6 +338,28 @@ impl Kind {
                 | Self::Retain
                 | Self::NonRetain
                 | Self::Persistent
+        )
+    }
+
+    /// Whether it opens a test, or what runs before or after tests.
+    pub(crate) fn opens_test(self) -> bool {
+        matches!(self, Self::Test | Self::Setup | Self::Teardown)
+    }
+
+    /// Whether it ends a unit that has an end of its own.
+    pub(crate) fn closes_unit(self) -> bool {
+        matches!(
+            self,
+            Self::EndFunction
+                | Self::EndFunctionBlock
+                | Self::EndProgram
+                | Self::EndClass
+                | Self::EndInterface
+                | Self::EndType
+                | Self::EndConfiguration
+                | Self::EndTest
+                | Self::EndSetup
+                | Self::EndTeardown
         )
     }
 

@@ -116,7 +116,7 @@ fn stray(tokens: &Tokens<'_>, list: &[Located], found: &mut Diagnostics) {
     let span = Span::new(tokens.file, start, end);
     let message = format!("`{text}` stands outside of every unit");
     let diagnostic = Diagnostic::new(Code::E0030, span, message)
-        .label("expected FUNCTION, FUNCTION_BLOCK, PROGRAM, TYPE, CLASS, INTERFACE, NAMESPACE, CONFIGURATION or VAR_GLOBAL");
+        .label("expected FUNCTION, FUNCTION_BLOCK, PROGRAM, TYPE, CLASS, INTERFACE, NAMESPACE, CONFIGURATION, VAR_GLOBAL or TEST");
     found.push(diagnostic);
 }
 

@@ -9,3 +9,4 @@ mod literals;
 mod mistakes;
 mod slices;
 mod statements;
+mod tests;

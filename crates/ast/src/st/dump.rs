@@ -5,7 +5,7 @@
 use super::{
     Arena, Argument, ArgumentKind, Block, Declarations, Dimension, Expr, ExprKind, Id, Ident, List,
     Literal, Member, Modifier, Pou, ProgramElement, Resource, Stmt, StmtKind, Stored, TypeKind,
-    TypeSpec, Unit, UnitKind, VarDecl, VarSection,
+    Test, TypeSpec, Unit, UnitKind, VarDecl, VarSection,
 };
 use crate::names::{Names, Symbol};
 
@@ -189,6 +189,11 @@ impl Dump<'_> {
             StmtKind::Return => self.line("return"),
             StmtKind::Exit => self.line("exit"),
             StmtKind::Continue => self.line("continue"),
+            StmtKind::Mock(instance) => self.line(format!("mock {}", self.expr(instance))),
+            StmtKind::MockFunction { function, value } => {
+                let (function, value) = (self.expr(function), self.expr(value));
+                self.line(format!("mock function {function} returns:{value}"));
+            }
             StmtKind::Empty => self.line("empty"),
             StmtKind::Error => self.line("ERROR"),
         }
@@ -324,6 +329,7 @@ impl Dump<'_> {
                     }
                 });
             }
+            UnitKind::Test(test) => self.test(test),
             UnitKind::Globals(section) => self.section(section),
             UnitKind::Using(paths) => self.line(format!("using{}", self.exprs(*paths))),
             UnitKind::Nothing => self.line("nothing"),
@@ -344,6 +350,14 @@ impl Dump<'_> {
                 dump.member(member);
             }
             dump.block(pou.body);
+        });
+    }
+
+    fn test(&mut self, test: &Test) {
+        let title = test.title.map(|title| self.expr(title)).unwrap_or_default();
+        self.under(format!("{} {title}", test.kind.as_str()), |dump| {
+            dump.sections(test.sections);
+            dump.block(test.body);
         });
     }
 

@@ -23,6 +23,7 @@ pub mod literal;
 pub mod pou;
 mod print;
 pub mod stmt;
+pub mod test;
 pub mod time;
 mod walk;
 
@@ -44,6 +45,7 @@ pub use literal::{IntLiteral, Literal, StringLiteral, TimeKind, TimeLiteral, Tim
 pub use pou::{Accessor, Action, Member, Method, Pou, PouKind, Property};
 pub use print::{print_expr, print_file, print_unit};
 pub use stmt::{AssignOp, Block, CaseArm, IfArm, Label, Stmt, StmtKind};
+pub use test::{Test, TestKind};
 
 use crate::names::Symbol;
 use iecc_source::{ContentHash, FileId, Span, TextRange};
@@ -142,6 +144,8 @@ pub enum UnitKind {
     Pou(Box<Pou>),
     /// `CONFIGURATION … END_CONFIGURATION`
     Configuration(Box<Configuration>),
+    /// `TEST … END_TEST`, SETUP and TEARDOWN.
+    Test(Box<Test>),
     /// `VAR_GLOBAL … END_VAR` outside of everything (CODESYS).
     Globals(VarSection),
     /// `USING a.b;`: paths of namespaces.

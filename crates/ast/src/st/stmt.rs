@@ -81,6 +81,15 @@ pub enum StmtKind {
     Exit,
     /// `CONTINUE;`
     Continue,
+    /// `MOCK instance;` in a test: calls of the instance do nothing.
+    Mock(Id<Expr>),
+    /// `MOCK_FUNCTION function RETURNS value;` in a test: calls of the function give the value.
+    MockFunction {
+        /// A path.
+        function: Id<Expr>,
+        /// What calls give.
+        value: Id<Expr>,
+    },
     /// `;`
     Empty,
     /// Something a message has been given for.

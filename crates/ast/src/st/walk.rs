@@ -65,8 +65,13 @@ impl Arena {
     /// left aside.
     pub fn each_expr_of(&self, stmt: Id<Stmt>, mut visit: impl FnMut(Id<Expr>)) {
         match self[stmt].kind {
-            StmtKind::Assign { target, value, .. } => [target, value].into_iter().for_each(visit),
+            StmtKind::Assign { target, value, .. }
+            | StmtKind::MockFunction {
+                function: target,
+                value,
+            } => [target, value].into_iter().for_each(visit),
             StmtKind::Call(expr)
+            | StmtKind::Mock(expr)
             | StmtKind::While {
                 condition: expr, ..
             }
@@ -117,6 +122,8 @@ impl Arena {
             | StmtKind::Repeat { body, .. } => visit(body),
             StmtKind::Assign { .. }
             | StmtKind::Call(_)
+            | StmtKind::Mock(_)
+            | StmtKind::MockFunction { .. }
             | StmtKind::Return
             | StmtKind::Exit
             | StmtKind::Continue

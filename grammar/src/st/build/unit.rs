@@ -3,8 +3,8 @@
 use super::{Build, ConfigItem, ConfigParts, Damage, Parts, SyntaxError};
 use iecc_ast::st::{
     Accessor, Action, Argument, Configuration, Expr, Id, Ident, List, Member, Method, Modifier,
-    Pou, PouKind, ProgramConfig, ProgramElement, Property, Resource, Stmt, StmtKind, Task,
-    TypeSpec, UnitKind, VarSection,
+    Pou, PouKind, ProgramConfig, ProgramElement, Property, Resource, Stmt, StmtKind, Task, Test,
+    TestKind, TypeSpec, UnitKind, VarSection,
 };
 use iecc_diag::{Code, Diagnostic};
 use lalrpop_util::ParseError;
@@ -189,6 +189,25 @@ impl Build<'_, '_> {
         let diagnostic = Diagnostic::new(Code::E0010, self.span_of(second.range), message)
             .also(self.span_of(first.range), "the first one");
         self.report(diagnostic);
+    }
+
+    pub(crate) fn test(
+        &mut self,
+        start: u32,
+        kind: TestKind,
+        title: Option<Id<Expr>>,
+        opener_end: u32,
+        parts: Parts,
+        end: u32,
+    ) -> UnitKind {
+        UnitKind::Test(Box::new(Test {
+            kind,
+            title,
+            sections: self.arena.list(parts.sections),
+            body: self.arena.list(parts.body),
+            opener: self.range(start, opener_end),
+            range: self.range(start, end),
+        }))
     }
 
     pub(crate) fn task(

@@ -85,7 +85,9 @@ fn awaited(opener: Kind) -> Option<Kind> {
 }
 
 fn has_header(opener: Kind) -> bool {
-    is_pou(opener) || is_member(opener) || matches!(opener, Kind::Configuration | Kind::Resource)
+    is_pou(opener)
+        || is_member(opener)
+        || matches!(opener, Kind::Configuration | Kind::Resource | Kind::Test)
 }
 
 pub(super) fn is_pou(kind: Kind) -> bool {
@@ -117,7 +119,7 @@ pub(super) fn divides(kind: Kind) -> bool {
 }
 
 /// Openers with their closers.
-const PAIRS: [(Kind, Kind); 26] = [
+const PAIRS: [(Kind, Kind); 29] = [
     (Kind::If, Kind::EndIf),
     (Kind::Case, Kind::EndCase),
     (Kind::For, Kind::EndFor),
@@ -138,6 +140,9 @@ const PAIRS: [(Kind, Kind); 26] = [
     (Kind::Union, Kind::EndUnion),
     (Kind::Configuration, Kind::EndConfiguration),
     (Kind::Resource, Kind::EndResource),
+    (Kind::Test, Kind::EndTest),
+    (Kind::Setup, Kind::EndSetup),
+    (Kind::Teardown, Kind::EndTeardown),
     (Kind::Var, Kind::EndVar),
     (Kind::VarInput, Kind::EndVar),
     (Kind::VarOutput, Kind::EndVar),

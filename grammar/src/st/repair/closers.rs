@@ -97,7 +97,7 @@ impl Repair<'_, '_> {
     fn close_wrongly(&mut self, token: Located) {
         let unit = self.blocks.first().copied();
         match unit {
-            Some(unit) if is_pou(unit.kind()) && is_pou_closer(token.1.kind) => {
+            Some(unit) if has_own_closer(unit.kind()) && is_unit_closer(token.1.kind) => {
                 self.close_above(1, token);
                 self.wrong_closer(unit, token);
                 self.blocks.clear();
@@ -245,6 +245,12 @@ pub(super) fn may_be_label(kind: Kind) -> bool {
     )
 }
 
-pub(super) fn is_pou_closer(kind: Kind) -> bool {
-    is_closer(kind) && (Kind::Function..=Kind::EndInterface).contains(&kind)
+/// Whether a unit begun by this word may have been closed by the word of another kind of unit.
+fn has_own_closer(opener: Kind) -> bool {
+    is_pou(opener) || opener.opens_test()
+}
+
+pub(super) fn is_unit_closer(kind: Kind) -> bool {
+    let tests = matches!(kind, Kind::EndTest | Kind::EndSetup | Kind::EndTeardown);
+    tests || is_closer(kind) && (Kind::Function..=Kind::EndInterface).contains(&kind)
 }

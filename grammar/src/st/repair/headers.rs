@@ -31,6 +31,8 @@ fn continues(before: Kind, next: Kind) -> bool {
         Kind::Pointer | Kind::Reference => next == Kind::To,
         Kind::CloseBracket => heritage || next == Kind::Of,
         Kind::CloseParen | Kind::Semicolon => heritage,
+        Kind::Test => next == Kind::String,
+        Kind::String => false,
         opener => next == Kind::Word || opener == Kind::Property && next == Kind::Colon,
     }
 }
@@ -62,7 +64,8 @@ impl Repair<'_, '_> {
         let ends = accessor
             || begins && last.ends_operand()
             || self.is_structural(kind)
-            || self.action_ends(block, last);
+            || self.action_ends(block, last)
+            || block.kind() == Kind::Test && last == Kind::String;
         if !ends {
             return self.skip_in_header(at, block);
         }

@@ -1,7 +1,7 @@
 //! Semicolons, and the words THEN, DO and OF, where they are missing.
 
 use super::blocks::{Block, Context, closes_statement, is_member};
-use super::closers::{is_pou_closer, may_be_label};
+use super::closers::{is_unit_closer, may_be_label};
 use super::{Kind, Repair};
 use iecc_diag::{Code, Diagnostic};
 
@@ -152,7 +152,7 @@ impl Repair<'_, '_> {
     /// In a property stand GET and SET only. Anything else is left out, with one message; behind
     /// GET and SET it shows that END_PROPERTY is missing.
     fn settle_accessors(&mut self, at: usize, kind: Kind) -> bool {
-        let unit_goes_on = is_member(kind) || is_pou_closer(kind);
+        let unit_goes_on = is_member(kind) || is_unit_closer(kind);
         if unit_goes_on || matches!(kind, Kind::EndProperty | Kind::Semicolon) {
             return true;
         }
@@ -240,7 +240,7 @@ impl Repair<'_, '_> {
         let new_line = || self.on_new_line(at);
         match self.context() {
             Context::Statements => {
-                let jumps = matches!(kind, Kind::Return | Kind::Exit | Kind::Continue);
+                let words = is_jump(kind) || matches!(kind, Kind::Mock | Kind::MockFunction);
                 let label = self
                     .blocks
                     .last()
@@ -250,7 +250,7 @@ impl Repair<'_, '_> {
                     .last_kind()
                     .is_some_and(|last| closes_statement(last) || is_jump(last));
                 let begins = begins_statement(kind) || label;
-                complete && (jumps || begins && (after_block || new_line()))
+                complete && (words || begins && (after_block || new_line()))
             }
             Context::Variables => {
                 let declares = matches!(

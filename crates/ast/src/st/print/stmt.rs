@@ -71,6 +71,16 @@ impl Printer<'_> {
             StmtKind::Return => self.write("RETURN"),
             StmtKind::Exit => self.write("EXIT"),
             StmtKind::Continue => self.write("CONTINUE"),
+            StmtKind::Mock(instance) => {
+                self.write("MOCK ");
+                self.expr(instance);
+            }
+            StmtKind::MockFunction { function, value } => {
+                self.write("MOCK_FUNCTION ");
+                self.expr(function);
+                self.write(" RETURNS ");
+                self.expr(value);
+            }
             StmtKind::Empty => {}
             StmtKind::Error => self.write("?"),
         }

@@ -2,7 +2,7 @@
 
 use super::super::{
     Accessor, Configuration, Expr, Id, List, Member, Method, Pou, ProgramConfig, ProgramElement,
-    Property, Resource, Task, Unit, UnitKind, VarSection,
+    Property, Resource, Task, Test, Unit, UnitKind, VarSection,
 };
 use super::Printer;
 
@@ -23,6 +23,7 @@ impl Printer<'_> {
             }
             UnitKind::Pou(pou) => self.pou(pou),
             UnitKind::Configuration(configuration) => self.configuration(configuration),
+            UnitKind::Test(test) => self.test(test),
             UnitKind::Globals(section) => self.section(*section),
             UnitKind::Using(paths) => {
                 self.pragmas_before(u32::MAX);
@@ -57,6 +58,19 @@ impl Printer<'_> {
         });
         self.block(pou.body);
         self.end_unit(pou.kind.as_str());
+    }
+
+    fn test(&mut self, test: &Test) {
+        self.line(test.range.start);
+        self.write(test.kind.as_str());
+        if let Some(title) = test.title {
+            self.write(" ");
+            self.expr(title);
+        }
+        self.write("\n");
+        self.indented(|printer| printer.sections(test.sections));
+        self.block(test.body);
+        self.end_unit(test.kind.as_str());
     }
 
     /// The last line. Pragmas that are left stand before it: behind it they would belong to the
