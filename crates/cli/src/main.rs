@@ -13,6 +13,7 @@ mod messages;
 mod program;
 mod run;
 mod terminal;
+mod test;
 
 use clap::{Parser, Subcommand};
 use messages::{Format, Messages};
@@ -44,6 +45,7 @@ enum Command {
     Build(build::Arguments),
     Check(check::Arguments),
     Run(run::Arguments),
+    Test(test::Arguments),
     Ir(ir::Arguments),
     Explain(explain::Arguments),
     Conformance(conformance::Arguments),
@@ -60,6 +62,11 @@ fn main() -> ExitCode {
         Command::Build(arguments) => build::run(&arguments, &mut messages),
         Command::Check(arguments) => check::run(&arguments, &mut messages),
         Command::Run(arguments) => run::run(&arguments, &mut messages),
+        Command::Test(arguments) => {
+            if let Err(error) = test::run(&arguments, &mut messages) {
+                return terminal::wrong_usage(&error);
+            }
+        }
         Command::Ir(arguments) => {
             if let Err(error) = ir::run(&arguments, &mut messages) {
                 return terminal::wrong_usage(&error.to_string());

@@ -22,6 +22,8 @@ pub(crate) enum Format {
 pub(crate) struct Messages {
     pub(crate) map: SourceMap,
     pub(crate) diagnostics: Diagnostics,
+    /// What is said of a run instead of how many errors there are.
+    pub(crate) verdict: Option<String>,
 }
 
 impl Messages {
@@ -38,7 +40,9 @@ impl Messages {
             }
         }
         let (errors, warnings) = (self.count(Severity::Error), self.count(Severity::Warning));
-        if format == Format::Text && errors + warnings > 0 {
+        if let Some(verdict) = &self.verdict {
+            terminal::print(&format!("{verdict}\n"));
+        } else if format == Format::Text && errors + warnings > 0 {
             terminal::complain(&summary(errors, warnings));
         }
         if errors == 0 {

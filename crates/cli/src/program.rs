@@ -4,10 +4,11 @@ use crate::messages::Messages;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use iecc_diag::Code;
 use iecc_driver::run::Stimulus;
+use iecc_driver::testing::TestProgram;
 use iecc_driver::{
     Choice, Compiled, DIALECTS, Dialect, EDITS, Edits, FAULTS, Found, FrontOptions, INITS, Init,
-    LEVELS, Level, Levels, OnFault, Project, Sources, TimerBase, check_options, compile_with_tick,
-    find, find_choice, load,
+    LEVELS, Level, Levels, OnFault, Project, Sources, Tests, TimerBase, check_options,
+    compile_with_tick, find, find_choice, load,
 };
 use std::path::{Path, PathBuf};
 
@@ -132,28 +133,36 @@ impl Program {
 
     /// Reads the program and says what is wrong with it.
     pub(crate) fn check(&self, messages: &mut Messages) {
-        if let Some((sources, project)) = self.read(messages) {
+        if let Some((sources, project)) = self.read(messages, Tests::Checked) {
             let (map, diagnostics) = (&messages.map, &mut messages.diagnostics);
             check_options(map, &sources, &project.options, diagnostics);
         }
     }
 
+    /// Reads the program and compiles its tests.
+    pub(crate) fn compile_tests(&self, messages: &mut Messages) -> Option<TestProgram> {
+        let (sources, project) = self.read(messages, Tests::Run)?;
+        let (map, diagnostics) = (&messages.map, &mut messages.diagnostics);
+        TestProgram::compile(map, &sources, &project.options, diagnostics)
+    }
+
     /// Reads the program and compiles it.
     pub(crate) fn compile(&self, messages: &mut Messages) -> Option<(Compiled, Project)> {
-        let (sources, project) = self.read(messages)?;
+        let (sources, project) = self.read(messages, Tests::LeftOut)?;
         let (map, diagnostics) = (&messages.map, &mut messages.diagnostics);
         let compiled = compile_with_tick(map, &sources, &project.options, diagnostics)?;
         Some((compiled, project))
     }
 
     /// The sources, and the options of the project file and the command line.
-    fn read(&self, messages: &mut Messages) -> Option<(Sources, Project)> {
+    fn read(&self, messages: &mut Messages, tests: Tests) -> Option<(Sources, Project)> {
         let (map, diagnostics) = (&mut messages.map, &mut messages.diagnostics);
         let (mut project, paths) = match find(map, &self.paths, diagnostics)? {
             Found::Project(project) => (*project, None),
             Found::Paths(paths) => (Project::default(), Some(paths)),
         };
         self.override_options(&mut project.options);
+        project.options.tests = tests;
         let levels = &project.options.levels;
         let sources = match paths {
             Some(paths) => Sources::load(map, &paths, levels, diagnostics),

@@ -180,6 +180,9 @@ codes! {
     E3023 Error "property is used against its kind";
     E3040 Error "recursion";
     E3041 Error "loop never ends";
+    E3060 Error "statement of tests outside of a test";
+    E3061 Error "assertion is written wrongly";
+    E3062 Error "nothing there that could be mocked";
     E3050 Warning "variable is not used";
     E3051 Warning "statement is never reached";
     E3052 Warning "function does not give its result";
@@ -248,6 +251,8 @@ codes! {
     E6063 Error "source of the project does not exist";
     E6064 Error "name for an input or output is taken";
     E6065 Error "option means nothing for this language";
+    E6090 Error "assertion failed";
+    E6091 Error "test was abandoned by a fault";
     E6080 Error "file is no case of the conformance suite";
     E6081 Error "case of the conformance suite failed";
     E6040 Error "declarations of a global variable differ";

@@ -77,7 +77,7 @@ impl EngineKind {
     }
 }
 
-fn for_software(module: &Module) -> Module {
+pub(crate) fn for_software(module: &Module) -> Module {
     let mut module = module.clone();
     Pipeline::Software.run(&mut module, &Settings::default());
     module

@@ -16,6 +16,7 @@ use iecc_interp::run_prescan;
 use iecc_ir::{Module, verify};
 use iecc_lower::{MILLISECOND_NS, OnFault};
 use iecc_sema::hir::{self, StructKind, Trigger};
+use iecc_sema::st::testing::{Suite, Tests};
 use iecc_sema::{logix, st};
 use iecc_source::{FileId, SourceMap};
 use std::path::Path;
@@ -39,6 +40,8 @@ pub struct FrontOptions {
     pub name: Option<String>,
     /// The program that runs, where the source leaves it open.
     pub entry: Option<String>,
+    /// What becomes of unit tests.
+    pub tests: Tests,
     /// Inputs and outputs that get another name.
     pub renames: Vec<Rename>,
 }
@@ -90,10 +93,22 @@ pub fn check(
     options: &FrontOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<hir::Program> {
+    let (program, _) = check_tests(map, sources, options, diagnostics)?;
+    Some(program)
+}
+
+/// As [`check`], and says what the outputs of a program that runs tests mean.
+fn check_tests(
+    map: &SourceMap,
+    sources: &Sources,
+    options: &FrontOptions,
+    diagnostics: &mut Diagnostics,
+) -> Option<(hir::Program, Suite)> {
     let mut found = Diagnostics::new();
     misfits(sources.language(), options, &mut found);
     let program = match sources.language() {
-        Language::Logix => check_logix(map, sources, options, &mut found),
+        Language::Logix => check_logix(map, sources, options, &mut found)
+            .map(|program| (program, Suite::default())),
         Language::StructuredText => check_text(map, sources, options, &mut found),
     };
     options.levels.apply(&mut found);
@@ -155,7 +170,7 @@ fn check_text(
     sources: &Sources,
     options: &FrontOptions,
     found: &mut Diagnostics,
-) -> Option<hir::Program> {
+) -> Option<(hir::Program, Suite)> {
     let mut names = Names::new();
     // Names keep their first spelling, which is to be the user's.
     let parse = |id: &FileId| {
@@ -171,9 +186,10 @@ fn check_text(
     let options = st::Options {
         codesys: options.dialect == Dialect::Codesys,
         entry: options.entry.as_deref().map(|entry| names.intern(entry)),
+        tests: options.tests,
     };
     let evaluator = &Constants;
-    Some(st::analyze(
+    Some(st::analyze_tests(
         &library, &files, &names, options, evaluator, found,
     ))
 }
@@ -239,19 +255,47 @@ pub fn compile_with_tick(
 ) -> Option<Compiled> {
     let program = check(map, sources, options, diagnostics)?;
     let tick_ns = tick_ns(&program);
-    let lowering = lower_options(&program, options, diagnostics)?;
-    let mut module = iecc_lower::lower(&program, &lowering);
+    let mut module = lowered(&program, options, diagnostics)?;
+    rename(&mut module, &options.renames, diagnostics)?;
+    if let Some(name) = &options.name {
+        module.name.clone_from(name);
+    }
+    Some(Compiled { module, tick_ns })
+}
+
+fn lowered(
+    program: &hir::Program,
+    options: &FrontOptions,
+    diagnostics: &mut Diagnostics,
+) -> Option<Module> {
+    let lowering = lower_options(program, options, diagnostics)?;
+    let mut module = iecc_lower::lower(program, &lowering);
     let verified = match verify(&module) {
         Ok(verified) => verified,
         Err(errors) => panic!("lowering broke the rules of the IR: {}", errors[0]),
     };
     // Prescan has no faults: it only stores.
     module.image = run_prescan(verified).unwrap_or_else(|fault| panic!("prescan failed: {fault}"));
-    rename(&mut module, &options.renames, diagnostics)?;
-    if let Some(name) = &options.name {
-        module.name.clone_from(name);
+    Some(module)
+}
+
+/// Compiles the tests of a program to a module that runs them; none if there are no tests.
+pub(crate) fn compile_suite(
+    map: &SourceMap,
+    sources: &Sources,
+    options: &FrontOptions,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Option<Module>, Suite)> {
+    let options = FrontOptions {
+        tests: Tests::Run,
+        ..options.clone()
+    };
+    let (program, suite) = check_tests(map, sources, &options, diagnostics)?;
+    if suite.tests.is_empty() {
+        return Some((None, suite));
     }
-    Some(Compiled { module, tick_ns })
+    let module = lowered(&program, &options, diagnostics)?;
+    Some((Some(module), suite))
 }
 
 /// Says everything that [`compile`] says. A module is made only where an option is about it.

@@ -21,6 +21,7 @@ mod rename;
 pub mod run;
 pub mod sim;
 mod sources;
+pub mod testing;
 
 pub use build::{Replay, VerilogRequest, build_object, build_verilog};
 pub use choices::{Choice, DIALECTS, EDITS, FAULTS, INITS, LEVELS, find as find_choice};
@@ -33,8 +34,9 @@ pub use iecc_grammar::st::Dialect;
 pub use iecc_jit::Cpu;
 pub use iecc_lower::OnFault;
 pub use iecc_sema::logix::{Edits, Init};
+pub use iecc_sema::st::testing::Tests;
 pub use levels::{Level, Levels};
-pub use output::write_artifacts;
+pub use output::{write_artifacts, write_file};
 pub use parallel::parallel_map;
 pub use pipeline::{After, NoSuchPlace, Pipeline, list_passes, show};
 pub use project::{Found, PROJECT_FILE, Project, VerilogSettings, find};

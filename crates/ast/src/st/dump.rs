@@ -4,8 +4,8 @@
 
 use super::{
     Arena, Argument, ArgumentKind, Block, Declarations, Dimension, Expr, ExprKind, Id, Ident, List,
-    Literal, Member, Modifier, Pou, ProgramElement, Resource, Stmt, StmtKind, Stored, TypeKind,
-    Test, TypeSpec, Unit, UnitKind, VarDecl, VarSection,
+    Literal, Member, Modifier, Pou, ProgramElement, Resource, Stmt, StmtKind, Stored, Test,
+    TypeKind, TypeSpec, Unit, UnitKind, VarDecl, VarSection,
 };
 use crate::names::{Names, Symbol};
 

@@ -43,7 +43,7 @@ pub use expr::{
 };
 pub use literal::{IntLiteral, Literal, StringLiteral, TimeKind, TimeLiteral, TimeShape};
 pub use pou::{Accessor, Action, Member, Method, Pou, PouKind, Property};
-pub use print::{print_expr, print_file, print_unit};
+pub use print::{print_expr, print_file, print_unit, string_text};
 pub use stmt::{AssignOp, Block, CaseArm, IfArm, Label, Stmt, StmtKind};
 pub use test::{Test, TestKind};
 

@@ -43,6 +43,9 @@ pub(super) const KEYS: &[Key] = &[
     key("sources", |reader, project, value| {
         project.sources = reader.texts(value);
     }),
+    key("tests", |reader, project, value| {
+        project.tests = reader.texts(value).unwrap_or_default();
+    }),
     key("entry", |reader, project, value| {
         project.options.entry = reader.text(value).map(|text| text.node);
     }),

@@ -11,7 +11,7 @@ mod read;
 mod tests;
 
 use crate::sources::{Folder, entries, is_source, nothing};
-use crate::{FrontOptions, Levels, Sources, load};
+use crate::{FrontOptions, Levels, Sources, Tests, load};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_source::{SourceMap, Span, Spanned};
 use pattern::Pattern;
@@ -28,6 +28,8 @@ pub struct Project {
     folder: PathBuf,
     /// Files, folders and patterns; the whole folder if `None`.
     sources: Option<Vec<Spanned<String>>>,
+    /// Files, folders and patterns that hold tests and what only these need.
+    tests: Vec<Spanned<String>>,
     /// Choices about the program.
     pub options: FrontOptions,
     /// The time from one scan to the next.
@@ -121,19 +123,27 @@ impl Project {
         read::project(file, map.file(file).text(), folder, diagnostics)
     }
 
-    /// Reads the source files; `None` after mistakes.
+    /// Reads the source files, those of tests only where the options want tests; `None` after
+    /// mistakes.
     pub fn load(
         &self,
         map: &mut SourceMap,
         levels: &Levels,
         diagnostics: &mut Diagnostics,
     ) -> Option<Sources> {
-        let Some(listed) = &self.sources else {
-            let here = [non_empty(&self.folder)];
-            return Sources::load(map, &here, levels, diagnostics);
+        let paths = match &self.sources {
+            Some(listed) => self.listed(listed, diagnostics),
+            None => Some(vec![non_empty(&self.folder)]),
         };
-        let paths = self.listed(listed, diagnostics)?;
-        Sources::load(map, &paths, levels, diagnostics)
+        let tests = self.listed(&self.tests, diagnostics);
+        let (mut paths, tests) = (paths?, tests?);
+        match self.options.tests {
+            Tests::LeftOut => Sources::load_without(map, &paths, &tests, levels, diagnostics),
+            Tests::Checked | Tests::Run => {
+                paths.extend(tests);
+                Sources::load(map, &paths, levels, diagnostics)
+            }
+        }
     }
 
     /// The files and folders that the list of sources stands for.

@@ -28,4 +28,6 @@ pub use probe::{Probe, Probes, Shape};
 pub use session::{Column, Request, RunError, Session};
 pub use stimulus::Stimulus;
 pub use time::{Schedule, TimeUnit, parse_duration};
+pub(crate) use value::write_value;
+
 pub use trace::{CsvTrace, NoTrace, Trace, TraceFile, VcdTrace};

@@ -149,7 +149,7 @@ fn parse_float(text: &str, largest: f64) -> Result<f64, ValueError> {
 
 /// Appends a value as a trace shows it: BOOL as 0 or 1, integers and times by their view, reals with
 /// the fewest digits that give them back.
-pub(super) fn write_value(out: &mut String, ty: Type, view: View, bits: u64) {
+pub(crate) fn write_value(out: &mut String, ty: Type, view: View, bits: u64) {
     let written = match ty {
         Type::I1 => write!(out, "{bits}"),
         Type::I8 | Type::I16 | Type::I32 | Type::I64 => write_int(out, ty, view, bits),

@@ -62,8 +62,20 @@ impl Sources {
         levels: &Levels,
         diagnostics: &mut Diagnostics,
     ) -> Option<Self> {
+        Self::load_without(map, paths, &[], levels, diagnostics)
+    }
+
+    /// As [`Sources::load`], but for the files at some paths and in the folders at some paths.
+    pub(crate) fn load_without(
+        map: &mut SourceMap,
+        paths: &[PathBuf],
+        without: &[PathBuf],
+        levels: &Levels,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Self> {
         let mut found = Diagnostics::new();
         let sources = Search::new(&mut found)
+            .leave_out(without)
             .all(paths)
             .and_then(|chosen| chosen.read(map, &mut found));
         levels.apply(&mut found);
@@ -146,6 +158,25 @@ impl<'d> Search<'d> {
             taken: BTreeSet::new(),
             diagnostics,
         }
+    }
+
+    /// Takes files as read already.
+    fn leave_out(mut self, paths: &[PathBuf]) -> Self {
+        for path in paths {
+            match Folder::read(path) {
+                Ok(folder) => folder
+                    .files
+                    .iter()
+                    .for_each(|file| self.leave_out_file(file)),
+                Err(_) => self.leave_out_file(path),
+            }
+        }
+        self
+    }
+
+    fn leave_out_file(&mut self, path: &Path) {
+        let real = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        self.taken.insert(real);
     }
 
     fn all(mut self, paths: &[PathBuf]) -> Option<Chosen> {

@@ -231,7 +231,10 @@ impl Analysis<'_> {
     fn uses_of(&mut self, id: UnitId, uses: &mut BTreeMap<u8, Vec<Use>>) {
         let unit = self.unit(id);
         let located = match unit.kind {
-            UnitKind::Pou(_) | UnitKind::Configuration(_) | UnitKind::Globals(_) => true,
+            UnitKind::Pou(_)
+            | UnitKind::Configuration(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Test(_) => true,
             UnitKind::Types { .. } | UnitKind::Using(_) | UnitKind::Nothing | UnitKind::Error => {
                 false
             }

@@ -108,6 +108,8 @@ pub(crate) struct Analysis<'a> {
     /// How many bodies have a name.
     pub unit_names: FxHashMap<String, u32>,
     pub hir_ids: FxHashMap<PouId, hir::PouId>,
+    /// The unit tests.
+    pub testing: super::testing::Testing,
     pub found: Diagnostics,
     /// What is given only where there are no errors.
     pub warnings: Vec<Diagnostic>,

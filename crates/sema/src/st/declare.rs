@@ -4,6 +4,7 @@
 use super::analysis::{Analysis, Resolution, TypeDecl, UnitRef};
 use super::hidden::Accessors;
 use super::signature::{Bindings, Def, NamespaceId, Part, Pou, PouId, State, TypeDeclId, UnitId};
+use super::testing::Tests;
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, File, Item, Member, ScopeId, UnitKind};
 use iecc_diag::{Code, Diagnostic};
@@ -74,6 +75,10 @@ impl<'a> Analysis<'a> {
     }
 
     fn declare_unit(&mut self, unit: &'a st::Unit, namespace: NamespaceId, list: Option<Symbol>) {
+        let is_test = matches!(unit.kind, UnitKind::Test(_));
+        if is_test && self.options.tests == Tests::LeftOut {
+            return;
+        }
         let id = UnitId(self.units.len() as u32);
         self.units.push(UnitRef { unit, namespace });
         match &unit.kind {
@@ -109,6 +114,7 @@ impl<'a> Analysis<'a> {
                     }
                 }
             }
+            UnitKind::Test(_) => self.note_test(id),
             UnitKind::Globals(_) => self.lists.push((id, list)),
             UnitKind::Using(_) | UnitKind::Nothing | UnitKind::Error => {}
         }

@@ -99,6 +99,10 @@ impl Analysis<'_> {
                     && var.range != inherited.range;
                 if !passed_on || self.writes_in_out(id, var.name) {
                     let first = self.span(self.pou(of).unit, inherited.range);
+                    if self.is_test(unit) {
+                        self.declared_twice(var.name, span, first);
+                        continue;
+                    }
                     self.inherited_twice(var.name, span, first);
                 }
             } else if let Some(method) = self.method(base, var.name) {

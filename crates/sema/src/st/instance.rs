@@ -14,6 +14,8 @@ use iecc_diag::{Code, Diagnostic};
 pub(crate) enum InstancePart {
     /// The number of its type.
     TypeNumber,
+    /// Whether it is a mock, and how often it was called.
+    Mock,
     /// The instance of what is extended.
     Base(PouId),
     /// A variable, by its position in the signature.
@@ -28,8 +30,19 @@ type Given = Vec<(PouId, usize, st::Id<st::Expr>)>;
 impl Analysis<'_> {
     /// The field of the first variable of an instance.
     pub(crate) fn first_field(&self, pou: PouId) -> u32 {
-        let extends = !self.pou(pou).extends.is_empty();
-        u32::from(extends || self.holds_number(pou))
+        if self.base_of(pou).is_some() {
+            return 1;
+        }
+        u32::from(self.holds_number(pou)) + u32::from(self.testing.mocks)
+    }
+
+    /// The hidden number of an instance that may be a mock: how many steps lead to the root of what
+    /// it extends, and its field there.
+    pub(crate) fn mock_field(&self, pou: PouId) -> Option<(usize, u32)> {
+        let lineage = self.lineage(pou);
+        let root = *lineage.last().expect("begins with the unit");
+        let field = u32::from(self.holds_number(root));
+        self.testing.mocks.then_some((lineage.len() - 1, field))
     }
 
     /// What the structure of an instance is made of; positions are those of its fields.
@@ -38,6 +51,9 @@ impl Analysis<'_> {
         let mut parts = Vec::new();
         if self.holds_number(pou) {
             parts.push(InstancePart::TypeNumber);
+        }
+        if self.testing.mocks && self.base_of(pou).is_none() {
+            parts.push(InstancePart::Mock);
         }
         parts.extend(self.base_of(pou).map(InstancePart::Base));
         let mut fields: Vec<(u32, InstancePart)> = Vec::new();
@@ -140,6 +156,7 @@ impl Analysis<'_> {
                         (Some(_), None) | (None, _) => self.declared_value(&var),
                     }
                 }
+                InstancePart::Mock => None,
                 // F_EDGE sees a falling edge only after the input was TRUE.
                 InstancePart::Edge(_) => None,
             };

@@ -48,6 +48,7 @@ pub mod signature;
 mod signatures;
 mod storage;
 mod suitable;
+pub mod testing;
 pub mod types;
 
 pub use constant::Const;
@@ -72,6 +73,8 @@ pub struct Options {
     pub codesys: bool,
     /// The program that runs, where there is no configuration; the only one if `None`.
     pub entry: Option<Symbol>,
+    /// What becomes of unit tests.
+    pub tests: testing::Tests,
 }
 
 /// Gives names that mean something without being words of the language their symbols. To be
@@ -87,6 +90,7 @@ pub fn intern_words(names: &mut Names) {
     for word in ["STRING", "WSTRING"] {
         names.reserve(word);
     }
+    testing::intern_words(names);
 }
 
 const WORDS: [&str; 6] = ["EN", "ENO", "INTERVAL", "SINGLE", "PRIORITY", "BIT"];
@@ -102,6 +106,18 @@ pub fn analyze(
     evaluator: &dyn Evaluator,
     diagnostics: &mut Diagnostics,
 ) -> hir::Program {
+    analyze_tests(library, files, names, options, evaluator, diagnostics).0
+}
+
+/// As [`analyze`], and says what the outputs of a program that runs tests mean.
+pub fn analyze_tests(
+    library: &[File],
+    files: &[File],
+    names: &Names,
+    options: Options,
+    evaluator: &dyn Evaluator,
+    diagnostics: &mut Diagnostics,
+) -> (hir::Program, testing::Suite) {
     let mut analysis = Analysis::new(names, options, evaluator);
     for file in library {
         analysis.declare_file(file, NamespaceId::LIBRARY);
@@ -116,11 +132,10 @@ pub fn analyze(
     analysis.index_units();
     analysis.resolve_usings();
     analysis.resolve_heritage();
+    analysis.declare_tests();
     analysis.resolve_all();
-    analysis.assemble();
-    let program = analysis.finish();
-    diagnostics.append(program.1);
-    program.0
+    analysis.assemble_all();
+    analysis.finish(diagnostics)
 }
 
 /// The functions of a library with some names, and what these call.
@@ -213,6 +228,7 @@ impl<'a> Analysis<'a> {
             synthetics: Vec::new(),
             unit_names: FxHashMap::default(),
             hir_ids: FxHashMap::default(),
+            testing: testing::Testing::new(names),
             found: Diagnostics::new(),
             warnings: Vec::new(),
             depth: 0,
@@ -264,7 +280,7 @@ impl<'a> Analysis<'a> {
     }
 
     /// Checks bodies until no new ones come up.
-    fn finish(mut self) -> (hir::Program, Diagnostics) {
+    fn finish(mut self, diagnostics: &mut Diagnostics) -> (hir::Program, testing::Suite) {
         let mut next = 0;
         while next < self.wanted.len() {
             let id = self.wanted[next];
@@ -280,7 +296,10 @@ impl<'a> Analysis<'a> {
             next += 1;
         }
         self.lint();
-        (self.hir, self.found)
+        self.show_results();
+        let suite = self.suite();
+        diagnostics.append(self.found);
+        (self.hir, suite)
     }
 
     fn checked_pou(&mut self, id: PouId) -> hir::Pou {
@@ -295,6 +314,7 @@ impl<'a> Analysis<'a> {
         let pou = self.pou(id);
         let (span, own) = (pou.span, self.text(pou.name));
         let name = match pou.owner {
+            _ if self.is_test(pou.unit) => self.test_name(id).unwrap_or_default(),
             Some(owner) => format!("{}.{own}", self.text(self.pou(owner).name)),
             None => own.to_owned(),
         };

@@ -40,6 +40,7 @@ impl Analysis<'_> {
                 | UnitKind::Types { .. }
                 | UnitKind::Configuration(_)
                 | UnitKind::Globals(_)
+                | UnitKind::Test(_)
                 | UnitKind::Nothing
                 | UnitKind::Error => {}
             }

@@ -181,6 +181,9 @@ impl Analysis<'_> {
                 st::PouKind::FunctionBlock | st::PouKind::Class => {
                     self.types.intern(TypeKind::Instance(id))
                 }
+                st::PouKind::Program if self.is_test(scope.unit) => {
+                    self.types.intern(TypeKind::Instance(id))
+                }
                 st::PouKind::Program => {
                     let span = self.span(scope.unit, written.range);
                     let name = self.text(self.pou(id).name);

@@ -84,8 +84,16 @@ impl Analysis<'_> {
     fn written_pou(&self, id: PouId) -> Option<WrittenPou> {
         let pou = self.pou(id);
         let unit = self.unit(pou.unit);
-        let UnitKind::Pou(whole) = &unit.kind else {
-            return None;
+        let whole = match &unit.kind {
+            UnitKind::Pou(whole) => whole,
+            UnitKind::Test(test) => {
+                return Some(WrittenPou {
+                    sections: test.sections,
+                    result: None,
+                    kind: pou.kind,
+                });
+            }
+            _ => return None,
         };
         let member = |index: u32| &unit.arena[whole.members][index as usize];
         let function = PouKind::Function;
@@ -257,12 +265,17 @@ impl Analysis<'_> {
             (PouKind::Program, S::Global | S::Access) => true,
             (_, S::Global | S::Access | S::Config) => false,
         };
-        if !allowed {
+        let test = match &self.unit(unit).kind {
+            UnitKind::Test(test) => Some(test.kind.as_str()),
+            _ => None,
+        };
+        let passed = matches!(section.kind, S::Input | S::Output | S::InOut);
+        if !allowed || test.is_some() && passed {
             let span = self.span(unit, section.range);
             let message = format!(
                 "{} cannot stand in a {}",
                 section.kind.as_str(),
-                kind.as_str()
+                test.unwrap_or(kind.as_str())
             );
             self.error(Code::E1011, span, message);
         }

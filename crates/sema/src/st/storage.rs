@@ -168,6 +168,10 @@ impl Analysis<'_> {
                     let ty = Type::Elementary(Elementary::Udint);
                     ("__type".to_owned(), ty, TypeId::ERROR, true)
                 }
+                InstancePart::Mock => {
+                    let ty = Type::Elementary(Elementary::Lint);
+                    ("__mock".to_owned(), ty, TypeId::ERROR, true)
+                }
                 InstancePart::Base(base) => {
                     let ty = Type::Struct(self.instance_struct(base));
                     ("__base".to_owned(), ty, TypeId::ERROR, true)

@@ -37,7 +37,8 @@ fn int_text(int: IntLiteral) -> String {
     }
 }
 
-fn string_text(string: &StringLiteral) -> String {
+/// A string as a literal, with its quotes.
+pub fn string_text(string: &StringLiteral) -> String {
     let quote = if string.double { '"' } else { '\'' };
     let mut text = String::from(quote);
     for unit in char::decode_utf16(string.units.iter().copied()) {

@@ -11,6 +11,8 @@ mod stmt;
 mod types;
 mod unit;
 
+pub use literal::string_text;
+
 use super::{Arena, File, Ident, Item, Modifier, Pragma, Scope, ScopeId, Unit};
 use super::{Expr, Id, List, Stored};
 use crate::names::{Names, Symbol};

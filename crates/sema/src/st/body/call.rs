@@ -114,6 +114,11 @@ impl Body<'_, '_> {
 
     /// A call as a statement.
     pub(super) fn call_statement(&mut self, id: st::Id<st::Expr>) {
+        if let Written::Call { callee, arguments } = self.arena()[id].kind
+            && let Some(word) = self.test_word(callee)
+        {
+            return self.test_statement(word, arguments, self.arena()[id].range);
+        }
         if let Some(enable) = self.enable(id)
             && !self.skips.contains(&id)
         {
@@ -268,6 +273,16 @@ impl Body<'_, '_> {
     }
 
     fn unknown_function(&mut self, name: Symbol, range: TextRange) {
+        if let Some(word) = self.an.testing.word(name) {
+            let what = word.name();
+            if self.in_test() {
+                let message = format!("{what} is a statement and gives no value");
+                self.error(Message::E3061, range, message);
+            } else {
+                self.outside_of_test(what, range);
+            }
+            return;
+        }
         let message = format!("no function or instance is named `{}`", self.text(name));
         let mut diagnostic = Diagnostic::new(Message::E1018, self.span(range), message);
         let candidates = self.an.visible(self.namespace);
@@ -436,7 +451,10 @@ impl Body<'_, '_> {
                 outputs,
             });
             let value = self.add_expr(ExprKind::Call(call), crate::hir::Elementary::Bool, range);
-            self.before(StmtKind::Eval(value), range);
+            let call = self.add_stmt(StmtKind::Eval(value), range);
+            let eno = eno_place.as_ref().filter(|_| changes_eno);
+            let call = self.unless_mocked(pou, place, call, eno, range);
+            self.pending.push(call);
         }
         for (var, argument) in &matched {
             if var.section == SectionKind::Output {

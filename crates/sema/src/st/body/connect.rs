@@ -80,7 +80,7 @@ impl Analysis<'_> {
 
 impl<'b, 'a> Body<'b, 'a> {
     /// Surroundings of code that stands in a configuration.
-    fn outside(an: &'b mut Analysis<'a>, unit: UnitId) -> Self {
+    pub(super) fn outside(an: &'b mut Analysis<'a>, unit: UnitId) -> Self {
         let namespace = an.units[unit.index()].namespace;
         let scope = TypeScope {
             unit,

@@ -67,7 +67,7 @@ impl Body<'_, '_> {
                 self.multiplex(which, inputs, bindings, eno, range)
             }
             "now" => {
-                let value = self.add_expr(ExprKind::Now, El::Ltime.storage(), range);
+                let value = self.now(range);
                 Operand::value(value, TypeId::of(El::Ltime), range)
             }
             "elapsed" => self.elapsed(ExprKind::Elapsed, El::Ltime, &next(), range),
@@ -91,7 +91,7 @@ impl Body<'_, '_> {
             return self.error(Message::E3015, range, "ELAPSED takes a variable");
         };
         let path = self.path_of(place, range);
-        let value = self.add_expr(kind(path), el.storage(), range);
+        let value = self.time_since(kind(path), el.storage(), path, range);
         Operand::value(value, TypeId::of(el), range)
     }
 

@@ -4,6 +4,7 @@
 //! literals take that type. After a message a piece counts as of the error type, which goes with
 //! everything, so one mistake gives one message.
 
+mod assertion;
 mod call;
 mod coerce;
 mod connect;
@@ -17,6 +18,7 @@ mod initial_reference;
 mod intrinsic;
 mod library;
 mod literal;
+mod mock;
 mod object;
 mod operand;
 mod operator;
@@ -25,11 +27,13 @@ mod program;
 mod property;
 mod reference;
 mod stmt;
+mod suite;
 mod time;
 mod untyped;
 
 pub(crate) use connect::Connections;
 pub(crate) use operand::{Operand, OperandKind, Place, Rights};
+pub(crate) use suite::TestRun;
 
 use super::analysis::Analysis;
 use super::resolve::TypeScope;

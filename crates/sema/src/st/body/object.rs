@@ -242,6 +242,9 @@ impl Body<'_, '_> {
         range: TextRange,
         declared: Span,
     ) -> bool {
+        if self.in_test() {
+            return true;
+        }
         let home = self.home();
         let (allowed, who) = match access {
             Access::Public => (true, "all"),

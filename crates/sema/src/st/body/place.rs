@@ -256,7 +256,7 @@ impl Body<'_, '_> {
         name: Symbol,
         range: TextRange,
     ) -> Operand {
-        if self.pou.is_none() || self.an.options.codesys {
+        if self.pou.is_none() || self.an.options.codesys || self.in_test() {
             return self.global_place(id, false, range);
         }
         let text = self.text(name);

@@ -242,7 +242,7 @@ impl Body<'_, '_> {
             };
             let (to, from) = (step(to), step(from));
             match part {
-                InstancePart::TypeNumber => {}
+                InstancePart::TypeNumber | InstancePart::Mock => {}
                 InstancePart::Base(base) => self.copy_instance(base, &to, &from, range),
                 InstancePart::Var(index) => {
                     let ty = self.an.pou(pou).vars[index].ty;

@@ -24,6 +24,7 @@ impl Body<'_, '_> {
             let value = self.add_const(1, crate::hir::Elementary::Bool, range);
             body.push(self.add_stmt(StmtKind::Assign(path, value), range));
         }
+        self.mocked_result(id, &mut body);
         if let Some(written) = self.an.written_body(id) {
             body.extend(self.block(written));
         }
@@ -145,6 +146,14 @@ impl Body<'_, '_> {
                 Some(StmtKind::Repeat(made, value))
             }
             Written::Return => Some(StmtKind::Return),
+            Written::Mock(instance) => {
+                self.mock(instance, range);
+                None
+            }
+            Written::MockFunction { function, value } => {
+                self.mock_function(function, value, range);
+                None
+            }
             Written::Exit => self.in_loop("EXIT", StmtKind::Exit, range),
             Written::Continue => self.in_loop("CONTINUE", StmtKind::Continue, range),
             Written::Empty | Written::Error => None,
@@ -307,6 +316,8 @@ impl Body<'_, '_> {
         };
         let place = place.clone();
         let why = match place.rights {
+            // Tests prepare what blocks give.
+            Rights::OtherOutput if self.in_test() => return Some(place),
             Rights::All | Rights::Temporary if !self.is_loop_variable(&place) => {
                 return Some(place);
             }

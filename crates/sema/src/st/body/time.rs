@@ -2,7 +2,8 @@
 
 use super::operator::fold_int;
 use super::{Body, Operand};
-use crate::hir::code::{BinaryOp as Op, ExprId, ExprKind};
+use crate::hir::{Elementary, Type};
+use crate::hir::code::{BinaryOp as Op, ExprId, ExprKind, PathId, Root, StmtKind};
 use crate::st::constant::Const;
 use crate::st::elementary::{El, Family};
 use crate::st::types::TypeId;
@@ -11,6 +12,45 @@ use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
 impl Body<'_, '_> {
+    /// The time of the scan; in a program that runs tests that of the test.
+    pub(super) fn now(&mut self, range: TextRange) -> ExprId {
+        let lint = El::Ltime.storage();
+        match self.an.clock() {
+            None => self.add_expr(ExprKind::Now, lint, range),
+            Some(clock) => {
+                let path = self.add_path(Root::Tag(clock), Vec::new(), range);
+                self.add_expr(ExprKind::Load(path), lint, range)
+            }
+        }
+    }
+
+    /// The time since what is at a place was renewed, and renews it. The time of a test never goes
+    /// back, so a difference is what an engine gives.
+    pub(super) fn time_since(
+        &mut self,
+        kind: ExprKind,
+        ty: Elementary,
+        last: PathId,
+        range: TextRange,
+    ) -> ExprId {
+        if !matches!(kind, ExprKind::Elapsed(_)) || self.an.clock().is_none() {
+            return self.add_expr(kind, ty, range);
+        }
+        let lint = El::Ltime.storage();
+        let (now, before) = (
+            self.now(range),
+            self.add_expr(ExprKind::Load(last), lint, range),
+        );
+        let passed = self.add_expr(ExprKind::Binary(Op::Subtract, now, before), lint, range);
+        let local = self.add_local("elapsed", Type::Elementary(lint));
+        let path = self.add_path(Root::Local(local), Vec::new(), range);
+        self.before(StmtKind::Assign(path, passed), range);
+        let now = self.now(range);
+        self.before(StmtKind::Assign(last, now), range);
+        let path = self.add_path(Root::Local(local), Vec::new(), range);
+        self.add_expr(ExprKind::Load(path), lint, range)
+    }
+
     /// Addition and the like on durations and points in time; `None` if neither operand is one.
     pub(super) fn time_arithmetic(
         &mut self,

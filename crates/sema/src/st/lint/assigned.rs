@@ -97,7 +97,11 @@ impl Walk<'_> {
                 self.block(body);
                 self.read(until);
             }
-            StmtKind::If { .. } | StmtKind::Case { .. } | StmtKind::Call(_) => {
+            StmtKind::If { .. }
+            | StmtKind::Case { .. }
+            | StmtKind::Call(_)
+            | StmtKind::Mock(_)
+            | StmtKind::MockFunction { .. } => {
                 let arena = self.arena;
                 arena.each_expr_of(stmt, |expr| self.read(expr));
                 self.branches(stmt);

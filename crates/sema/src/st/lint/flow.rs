@@ -71,7 +71,12 @@ fn statement_leaves(
             leaves(arena, body, found);
             false
         }
-        StmtKind::Assign { .. } | StmtKind::Call(_) | StmtKind::Empty | StmtKind::Error => false,
+        StmtKind::Assign { .. }
+        | StmtKind::Call(_)
+        | StmtKind::Mock(_)
+        | StmtKind::MockFunction { .. }
+        | StmtKind::Empty
+        | StmtKind::Error => false,
     }
 }
 
@@ -90,6 +95,8 @@ pub(in crate::st) fn can_leave(arena: &st::Arena, block: st::Block, inner: bool)
         | StmtKind::Repeat { body, .. } => can_leave(arena, body, true),
         StmtKind::Assign { .. }
         | StmtKind::Call(_)
+        | StmtKind::Mock(_)
+        | StmtKind::MockFunction { .. }
         | StmtKind::Continue
         | StmtKind::Empty
         | StmtKind::Error => false,

@@ -78,8 +78,10 @@ impl<'a> Analysis<'a> {
     pub(crate) fn written_statements(&self, id: PouId) -> Option<st::Block> {
         let pou = self.pou(id);
         let unit = self.unit(pou.unit);
-        let UnitKind::Pou(whole) = &unit.kind else {
-            return None;
+        let whole = match &unit.kind {
+            UnitKind::Pou(whole) => whole,
+            UnitKind::Test(test) => return Some(test.body),
+            _ => return None,
         };
         match pou.part {
             Part::Whole => Some(whole.body),
