@@ -156,7 +156,8 @@ pub fn library(
             analysis.want(id);
         }
     }
-    let (program, found) = analysis.finish();
+    let mut found = Diagnostics::new();
+    let (program, _) = analysis.finish(&mut found);
     if let Some(mistake) = found.iter().next() {
         panic!("the library has no mistakes: {mistake:?}");
     }

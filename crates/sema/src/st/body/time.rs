@@ -2,8 +2,8 @@
 
 use super::operator::fold_int;
 use super::{Body, Operand};
-use crate::hir::{Elementary, Type};
 use crate::hir::code::{BinaryOp as Op, ExprId, ExprKind, PathId, Root, StmtKind};
+use crate::hir::{Elementary, Type};
 use crate::st::constant::Const;
 use crate::st::elementary::{El, Family};
 use crate::st::types::TypeId;
