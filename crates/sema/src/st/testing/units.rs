@@ -89,12 +89,13 @@ impl Analysis<'_> {
     fn declare_test(&mut self, unit: UnitId, kind: PouKind) -> PouId {
         let written = self.written_test(unit);
         let name = self.names.find(written.kind.as_str());
+        let name = name.expect("words are interned first");
         let range = match written.title {
             Some(title) => self.unit(unit).arena[title].range,
             None => written.opener,
         };
         let id = self.add_pou(Pou {
-            name: name.expect("words are interned first"),
+            name,
             kind,
             unit,
             part: Part::Whole,
@@ -102,6 +103,7 @@ impl Analysis<'_> {
             namespace: self.units[unit.index()].namespace,
             span: self.span(unit, range),
             result: None,
+            result_name: name,
             vars: Vec::new(),
             by_name: FxHashMap::default(),
             members: Vec::new(),
