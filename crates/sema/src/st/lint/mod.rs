@@ -65,13 +65,10 @@ impl<'a> Analysis<'a> {
 
     /// The statements of a unit or member, if it has any.
     pub(crate) fn written_body(&self, id: PouId) -> Option<st::Block> {
-        let UnitKind::Pou(whole) = &self.unit(self.pou(id).unit).kind else {
-            return None;
-        };
-        if whole.kind == PouKind::Interface {
-            return None;
+        match &self.unit(self.pou(id).unit).kind {
+            UnitKind::Pou(whole) if whole.kind == PouKind::Interface => None,
+            _ => self.written_statements(id),
         }
-        self.written_statements(id)
     }
 
     /// As `written_body`, also where statements must not stand.
