@@ -154,6 +154,7 @@ codes! {
     E2034 Error "value is no reference";
     E2035 Error "?= between types it is not for";
     E2036 Error "?= that always gives NULL";
+    E2037 Error "something is computed with a pointer";
     // 3 statements and flow
     E3001 Error "value stands outside of a declaration";
     E3002 Error "reference to something that has none";

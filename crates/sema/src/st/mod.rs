@@ -46,6 +46,7 @@ mod program;
 mod resolve;
 pub mod signature;
 mod signatures;
+mod size;
 mod storage;
 mod suitable;
 pub mod testing;

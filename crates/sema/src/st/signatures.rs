@@ -185,7 +185,7 @@ impl Analysis<'_> {
                     self.own_global(id, &mut var);
                 } else if section.kind == SectionKind::External {
                     self.external(id, &mut var);
-                } else if constant {
+                } else if constant && !is_passed(section.kind) {
                     self.fold_constant(id, &mut var);
                 }
                 self.check_place_of_instance(id, &var);
@@ -478,6 +478,14 @@ impl Analysis<'_> {
         self.eno_units.borrow_mut().insert(unit, uses);
         uses
     }
+}
+
+/// Whether calls give or take the variables of a section.
+fn is_passed(section: SectionKind) -> bool {
+    matches!(
+        section,
+        SectionKind::Input | SectionKind::Output | SectionKind::InOut
+    )
 }
 
 /// A [`TypeScope`] that borrows nothing.

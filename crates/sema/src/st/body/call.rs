@@ -140,6 +140,13 @@ impl Body<'_, '_> {
             self.super_call(arguments, written.range);
             return;
         }
+        if let Some(value) = self.builtin(callee, arguments, written.range) {
+            if !value.is_error() {
+                let message = "this gives a value, which nobody takes";
+                self.error(Message::E3012, written.range, message);
+            }
+            return;
+        }
         match self.callee(callee, written.range) {
             Some(Callee::Block(pou, place)) => {
                 self.block_call(pou, &place, arguments, written.range);
@@ -178,6 +185,9 @@ impl Body<'_, '_> {
         if let Some(operand) = self.clock(callee, arguments, range) {
             return operand;
         }
+        if let Some(operand) = self.builtin(callee, arguments, range) {
+            return operand;
+        }
         match self.callee(callee, range) {
             Some(Callee::Mistake) | None => {
                 self.arguments_only(arguments);
@@ -193,7 +203,7 @@ impl Body<'_, '_> {
                 if result.ty == TypeId::NOTHING {
                     return self.error(Message::E3014, range, "this function gives no value");
                 }
-                result
+                self.as_target(result)
             }
         }
     }
@@ -550,22 +560,7 @@ impl Body<'_, '_> {
         if operand.is_error() {
             return None;
         }
-        let OperandKind::Place(_) = &operand.kind else {
-            let message = format!("in-out `{}` takes a variable", self.text(var.name));
-            self.error(Message::E3015, operand.range, message);
-            return None;
-        };
-        let place = self.writable(&operand)?;
-        if let Some(place) = self.as_base(&place, operand.ty, var.ty) {
-            return Some(self.path_of(&place, operand.range));
-        }
-        if self.an.types.strip(operand.ty) != self.an.types.strip(var.ty) {
-            if var.ty != TypeId::ERROR {
-                self.mismatch(&operand, var.ty);
-            }
-            return None;
-        }
-        Some(self.path_of(&place, operand.range))
+        self.reference_argument(var, &operand)
     }
 
     pub(super) fn require_in_outs(

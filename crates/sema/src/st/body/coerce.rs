@@ -6,7 +6,7 @@ use crate::hir::code::{Conversion, ExprId, ExprKind, PathId, StmtKind};
 use crate::hir::{Elementary, InitId};
 use crate::st::constant::Const;
 use crate::st::elementary::El;
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{ReferenceKind, TypeId, TypeKind};
 use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::TextRange;
 
@@ -24,6 +24,11 @@ impl Body<'_, '_> {
         let span = self.span(from.range);
         let mut diagnostic = Diagnostic::new(Message::E2020, span, message);
         let types = &self.an.types;
+        let pointer = |ty| matches!(types.base(ty), TypeKind::Reference(..));
+        if self.an.options.codesys && pointer(from.ty) && pointer(to) {
+            let note = "a pointer stands for a variable of its own type: what lies there is not looked at as another";
+            diagnostic = diagnostic.note(note);
+        }
         if let (Some(a), Some(b)) = (types.elementary(from.ty), types.elementary(to)) {
             let function = format!("{}_TO_{}", a.short_name(), b.short_name());
             diagnostic = diagnostic.note(format!("{function} converts it, if that is meant"));
@@ -107,6 +112,9 @@ impl Body<'_, '_> {
                 Some(self.add_expr(kind, base.storage(), operand.range))
             }
             (_, TypeKind::Interface(interface)) => self.interface_value(operand, interface),
+            (_, TypeKind::Reference(ReferenceKind::Implicit, target)) => {
+                self.passed_reference(operand, target)
+            }
             (TypeKind::Reference(_, a), TypeKind::Reference(_, b)) if self.refers_alike(a, b) => {
                 Some(self.raw(operand))
             }

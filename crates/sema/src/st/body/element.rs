@@ -86,6 +86,10 @@ impl Body<'_, '_> {
                 let el = if wide { El::Wchar } else { El::Char };
                 self.place_operand(root, steps, rights, TypeId::of(el), range)
             }
+            TypeKind::Reference(..) if self.an.options.codesys => {
+                self.no_arithmetic("a subscript computes with a pointer", range);
+                Operand::error(range)
+            }
             _ => {
                 let message = format!("{} has no elements", self.type_name(base.ty));
                 self.error(Message::E2031, base.range, message)

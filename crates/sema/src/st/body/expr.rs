@@ -1,9 +1,8 @@
 //! Expressions.
 
-use super::{Body, Operand, OperandKind};
-use crate::hir::code::ExprKind;
+use super::{Body, Operand};
 use crate::st::constant::Const;
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{ReferenceKind, TypeId};
 use iecc_ast::st::{self, ExprKind as Written};
 use iecc_diag::Code as Message;
 
@@ -34,7 +33,7 @@ impl Body<'_, '_> {
             | Written::This
             | Written::Super => self.place(id, want),
             Written::Null => Operand::constant(Const::Null, TypeId::NULL, range),
-            Written::Ref(operand) => self.reference_to(operand, range),
+            Written::Ref(operand) => self.reference_to(operand, ReferenceKind::RefTo, range),
             Written::Call { callee, arguments } => self.call(id, callee, arguments, range, want),
             Written::Unary { op, operand } => self.unary(op, operand, range, want),
             Written::Binary {
@@ -58,37 +57,5 @@ impl Body<'_, '_> {
     ) -> crate::hir::code::ExprId {
         let operand = self.expr(id, Some(ty));
         self.as_scalar(&operand, ty)
-    }
-
-    /// `REF(operand)`.
-    fn reference_to(
-        &mut self,
-        operand: st::Id<st::Expr>,
-        range: iecc_source::TextRange,
-    ) -> Operand {
-        let target = self.expr(operand, None);
-        if target.is_error() {
-            return Operand::error(range);
-        }
-        let OperandKind::Place(place) = &target.kind else {
-            return self.error(
-                Message::E3002,
-                target.range,
-                "only a variable has a reference",
-            );
-        };
-        if let Some(why) = self.no_reference(place) {
-            return self.error(Message::E3002, target.range, why);
-        }
-        let place = place.clone();
-        let path = self.path_of(&place, target.range);
-        let value = self.add_expr(
-            ExprKind::Address(path),
-            crate::hir::Elementary::Ulint,
-            range,
-        );
-        let kind = crate::st::types::ReferenceKind::RefTo;
-        let ty = self.an.types.intern(TypeKind::Reference(kind, target.ty));
-        Operand::value(value, ty, range)
     }
 }

@@ -329,9 +329,12 @@ impl Body<'_, '_> {
         }
     }
 
-    fn reference_argument(&mut self, var: &Var, operand: &Operand) -> Option<PathId> {
+    pub(super) fn reference_argument(&mut self, var: &Var, operand: &Operand) -> Option<PathId> {
         if operand.is_error() {
             return None;
+        }
+        if var.constant {
+            return Some(self.constant_in_out(var, operand));
         }
         let OperandKind::Place(_) = &operand.kind else {
             let message = format!("in-out `{}` takes a variable", self.text(var.name));
@@ -347,6 +350,18 @@ impl Body<'_, '_> {
             return None;
         }
         Some(self.path_of(&place, operand.range))
+    }
+
+    /// What a VAR_IN_OUT CONSTANT stands for (CODESYS): nothing changes it, so a value will do.
+    fn constant_in_out(&mut self, var: &Var, operand: &Operand) -> PathId {
+        let same = self.an.types.strip(operand.ty) == self.an.types.strip(var.ty);
+        if let (OperandKind::Place(place), true) = (&operand.kind, same) {
+            let place = place.clone();
+            return self.path_of(&place, operand.range);
+        }
+        let place = self.temporary(self.text(var.name), var.ty);
+        self.store(&place, var.ty, operand, operand.range);
+        self.path_of(&place, operand.range)
     }
 
     /// A structure, array or string by value: library code only reads it, others get a copy.

@@ -3,7 +3,7 @@
 use super::{Body, Operand};
 use crate::st::constant::{Const, round_to};
 use crate::st::elementary::El;
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{ReferenceKind, TypeId, TypeKind};
 use iecc_ast::st::{self, ExprKind, Literal, TimeKind};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
@@ -150,6 +150,11 @@ impl Body<'_, '_> {
                 None
             }
             (TypeKind::Reference(..) | TypeKind::Interface(_), Const::Null) => Some(Const::Null),
+            (
+                TypeKind::Reference(ReferenceKind::Pointer | ReferenceKind::RefTo, _)
+                | TypeKind::Interface(_),
+                Const::Int(0),
+            ) if untyped && self.an.options.codesys => Some(Const::Null),
             (TypeKind::Enum(index), Const::Int(number)) if untyped => {
                 let def = &self.an.types.enums[*index as usize];
                 if def.named_values {

@@ -5,6 +5,7 @@
 //! everything, so one mistake gives one message.
 
 mod assertion;
+mod builtin;
 mod call;
 mod coerce;
 mod connect;
@@ -23,6 +24,7 @@ mod object;
 mod operand;
 mod operator;
 mod place;
+mod pointer;
 mod program;
 mod property;
 mod reference;
@@ -48,7 +50,7 @@ use iecc_ast::Symbol;
 use iecc_ast::st;
 use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::{Span, TextRange};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// A body that is being checked, or the surroundings of a constant expression.
 pub(crate) struct Body<'b, 'a> {
@@ -70,6 +72,8 @@ pub(crate) struct Body<'b, 'a> {
     loops: Vec<Option<(Root, Vec<PathStep>)>>,
     /// Statements that have to run before the one that is being looked at.
     pub(super) pending: Vec<StmtId>,
+    /// The REFERENCEs that were followed, by the addresses read from them.
+    followed: HashMap<ExprId, Place>,
     /// Calls whose EN has been looked at.
     skips: HashSet<st::Id<st::Expr>>,
     /// Whether only constants are allowed; what is not constant is reported where it stands.
@@ -103,6 +107,7 @@ impl<'b, 'a> Body<'b, 'a> {
             eno: None,
             loops: Vec::new(),
             pending: Vec::new(),
+            followed: HashMap::new(),
             skips: HashSet::new(),
             constant_only: false,
         }

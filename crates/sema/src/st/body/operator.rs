@@ -169,6 +169,7 @@ impl Body<'_, '_> {
             | BinaryOp::Greater
             | BinaryOp::GreaterEqual => {
                 let (left, right) = self.numbers_as_durations(left, right);
+                let (left, right) = self.zero_as_null(left, right);
                 self.compare(op, left, right, range)
             }
             BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
@@ -266,6 +267,9 @@ impl Body<'_, '_> {
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
+        if self.pointer_arithmetic(op, &left, &right, range) {
+            return Operand::error(range);
+        }
         let (left, right) = match op {
             BinaryOp::Add | BinaryOp::Subtract => self.numbers_as_durations(left, right),
             _ => (left, right),

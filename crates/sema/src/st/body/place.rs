@@ -566,6 +566,9 @@ impl Body<'_, '_> {
             self.an.complete(pou);
         }
         let address = self.raw(reference);
+        if let OperandKind::Place(place) = &reference.kind {
+            self.followed.insert(address, place.clone());
+        }
         let ty = self.an.storage(target);
         let root = Root::Deref {
             address,
@@ -594,7 +597,7 @@ fn own_rights(var: &Var) -> Rights {
 
 /// What others may do with a variable of an instance.
 fn outside_rights(var: &Var) -> Rights {
-    if var.constant {
+    if var.constant && var.section != SectionKind::Input {
         return Rights::Constant;
     }
     match var.section {

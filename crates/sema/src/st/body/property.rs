@@ -175,15 +175,24 @@ impl Body<'_, '_> {
         self.as_value(read)
     }
 
-    /// The result of a call as what it is for the user: a reference stands for its target.
-    pub(super) fn as_value(&mut self, read: Operand) -> Operand {
-        if read.is_error() {
-            return read;
+    /// The result of a call, of which a REFERENCE stands for its target.
+    pub(super) fn as_target(&mut self, result: Operand) -> Operand {
+        match *self.an.types.base(result.ty) {
+            TypeKind::Reference(ReferenceKind::Implicit, target) if !result.is_error() => {
+                let range = result.range;
+                let held = self.hold(result);
+                self.follow(&held, target, range)
+            }
+            _ => result,
         }
-        let range = read.range;
-        if let TypeKind::Reference(ReferenceKind::Implicit, target) = *self.an.types.base(read.ty) {
-            let held = self.hold(read);
-            return self.follow(&held, target, range);
+    }
+
+    /// What a GET gives: a copy, or what a REFERENCE stands for.
+    fn as_value(&mut self, read: Operand) -> Operand {
+        let ty = read.ty;
+        let read = self.as_target(read);
+        if read.ty != ty || read.is_error() {
+            return read;
         }
         match read.kind {
             OperandKind::Place(mut place) => {

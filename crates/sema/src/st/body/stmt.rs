@@ -269,12 +269,11 @@ impl Body<'_, '_> {
             self.attempt(target, value, range);
             return;
         }
-        let place = self.place(target, None);
         if op == AssignOp::Bind {
-            self.expr(value, None);
-            self.error(Message::E2010, range, "`REF=` is not compiled yet");
+            self.rebind(target, value, range);
             return;
         }
+        let place = self.place(target, None);
         let value = self.expr(value, Some(TypeId::BOOL));
         let Some(to) = self.writable(&place) else {
             return;
