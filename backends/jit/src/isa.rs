@@ -46,7 +46,6 @@ fn flags(purpose: Purpose) -> Flags {
     for (name, value) in [
         ("opt_level", "speed"),
         ("enable_verifier", word(cfg!(debug_assertions))),
-        ("enable_nan_canonicalization", "true"),
         // Functions of the IR return as many values as they like.
         ("enable_multi_ret_implicit_sret", "true"),
         // A large frame touches every page on its way down, so that it cannot skip the guard page.

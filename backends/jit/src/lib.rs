@@ -6,6 +6,7 @@
 //!
 //! * `plan` finds out which functions the scan needs and which of them can abandon it, `writes` what
 //!   they change.
+//! * `nan` finds out where the bits of a NaN matter.
 //! * `translate` turns each into Cranelift's IR.
 //! * `compile` makes machine code of it, and refuses programs that are too large.
 //! * `entry` is what the outside calls, with the memory that `block` describes.
@@ -21,6 +22,7 @@ mod compile;
 mod context;
 mod entry;
 mod isa;
+mod nan;
 mod object;
 mod plan;
 mod translate;

@@ -24,6 +24,9 @@ const MAX_COPIED: usize = 1 << 22;
 /// What `inline_small` takes: bodies up to the first, and up to the second if there is one call.
 const SMALL: usize = 32;
 const SMALL_IF_CALLED_ONCE: usize = 1 << 10;
+/// What `inline_straight` takes: there are no branches in it, and what it loads is mostly what its caller
+/// has just stored.
+const STRAIGHT: usize = 80;
 /// What a function may grow to by `inline_small`; machine code generators dislike giants.
 const SMALL_FUNCTION: usize = 1 << 14;
 
@@ -44,6 +47,19 @@ pub(crate) fn inline_small(module: &mut Module) {
     }
     Inliner::new(SMALL_FUNCTION, SMALL_LOCALS).run(module, &|callee, size| {
         size <= SMALL || (count[callee] == 1 && size <= SMALL_IF_CALLED_ONCE)
+    });
+}
+
+/// Inlines calls of functions that are one block of few instructions.
+pub(crate) fn inline_straight(module: &mut Module) {
+    let mut straight = EntitySet::<FuncId>::new();
+    for (id, func) in module.funcs.iter() {
+        if func.layout.len() == 1 {
+            straight.insert(id);
+        }
+    }
+    Inliner::new(SMALL_FUNCTION, SMALL_LOCALS).run(module, &|callee, size| {
+        size <= STRAIGHT && straight.contains(callee)
     });
 }
 

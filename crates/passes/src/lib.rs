@@ -67,6 +67,12 @@ pub const PASSES: &[Pass] = &[
         run: |module, _| inline::inline_small(module),
     },
     Pass {
+        name: "inline_straight",
+        what: "puts functions that are one block in place of their calls",
+        why_here: "after if_convert_small, which makes one block of functions, and before the last folding",
+        run: |module, _| inline::inline_straight(module),
+    },
+    Pass {
         name: "fold",
         what: "computes constants, simplifies algebra, branches and jumps",
         why_here: "after every pass that uncovers constants: inlining, promotion, if-conversion",
@@ -77,6 +83,12 @@ pub const PASSES: &[Pass] = &[
         what: "computes equal things once, and loads once what is loaded twice",
         why_here: "after folding, which writes equal things equally",
         run: |module, _| cse::cse(module),
+    },
+    Pass {
+        name: "cse_near",
+        what: "the same, but loads again what was loaded long before",
+        why_here: "instead of cse where values cost registers",
+        run: |module, _| cse::cse_near(module),
     },
     Pass {
         name: "dce",
@@ -159,8 +171,9 @@ pub const SOFTWARE: &[&str] = &[
     "promote_few",
     "fold",
     "if_convert_small",
+    "inline_straight",
     "fold",
-    "cse",
+    "cse_near",
     "fold",
     "dce",
 ];

@@ -11,7 +11,7 @@ impl Translator<'_, '_> {
             let address = self.address(place);
             passed.push(self.pointer_to(&address));
         }
-        passed.extend(args.iter().map(|&v| self.value(v)));
+        passed.extend(args.iter().map(|&v| self.exact(v)));
         let metered = self.program.plan.facts(callee).metered;
         if metered {
             self.save_budget();

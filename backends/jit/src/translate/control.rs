@@ -11,6 +11,7 @@ impl Translator<'_, '_> {
     pub(super) fn terminator(&mut self, block: Block) {
         let (func, facts) = (self.func, self.facts);
         let origin = func.block(block).terminator_origin;
+        self.settle();
         if let Some(&payment) = facts.payments.get(&block) {
             self.pay(payment, origin);
         }
@@ -34,9 +35,12 @@ impl Translator<'_, '_> {
         }
     }
 
-    fn target(&self, target: &Target) -> (clif::Block, Vec<BlockArg>) {
-        let args = target.args.iter().map(|&v| self.value(v).into());
-        (self.block(target.block), args.collect())
+    fn target(&mut self, target: &Target) -> (clif::Block, Vec<BlockArg>) {
+        let params = &self.func.block(target.block).params;
+        let args = params.iter().zip(&target.args);
+        let args = args.map(|(&param, &arg)| self.as_class(self.nan[param], arg).into());
+        let args = args.collect();
+        (self.block(target.block), args)
     }
 
     fn brif(&mut self, cond: Value, then: &Target, otherwise: &Target) {
@@ -84,7 +88,7 @@ impl Translator<'_, '_> {
         if self.program.returns_status(self.id) {
             returned.push(self.ins().iconst(types::I32, 0));
         }
-        returned.extend(values.iter().map(|&v| self.value(v)));
+        returned.extend(values.iter().map(|&v| self.exact(v)));
         self.ins().return_(&returned);
     }
 

@@ -12,6 +12,7 @@ use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, types};
 use iecc_ir::{ArrayId, Index, MemType, Place, Projection, Root, Type, Value};
 
 /// Where a place lies.
+#[derive(Clone)]
 pub(super) struct Address {
     pub(super) base: clif::Value,
     pub(super) offset: i32,
@@ -213,6 +214,7 @@ impl Translator<'_, '_> {
     }
 
     pub(super) fn load(&mut self, place: &Place) -> clif::Value {
+        self.settle_for(place);
         let address = self.address(place);
         self.load_from(&address)
     }
@@ -251,7 +253,8 @@ impl Translator<'_, '_> {
 
     pub(super) fn store(&mut self, place: &Place, value: Value) {
         let address = self.address(place);
-        let (constant, value) = (self.func.constant(value), self.value(value));
+        let constant = self.func.constant(value);
+        let value = self.stored_value(place, &address, value);
         self.if_exists(&address, |this| {
             let value = match address.bit {
                 Some(bit) => this.with_bit(&address, bit, constant, value),

@@ -9,9 +9,11 @@ mod bulk;
 mod calls;
 mod control;
 mod memory;
+mod nan;
 mod values;
 
 use crate::context::ScanContext;
+use crate::nan::{NanClasses, classify};
 use crate::plan::{Facts, Plan};
 use cranelift_codegen::ir::{
     self as clif, AbiParam, AliasRegion, AliasRegionData, InstBuilder, MemFlagsData, types,
@@ -124,6 +126,10 @@ struct Translator<'t, 'm> {
     local_slot: Option<clif::StackSlot>,
     /// What is left of the budget, in metered functions.
     budget: Variable,
+    /// What NaN each value may be.
+    nan: NanClasses,
+    /// Floats in memory that may be the wrong NaN.
+    waiting: nan::Waiting,
     /// Returns the status it is given; made when first needed.
     fault_exit: Option<clif::Block>,
 }
@@ -161,6 +167,8 @@ pub(crate) fn translate(
         local_offsets: program.layout.locals(&program.module.types, func).0,
         local_slot: None,
         budget: builder.declare_var(types::I64),
+        nan: NanClasses::new(),
+        waiting: nan::Waiting::default(),
         fault_exit: None,
         unit,
         builder,
@@ -184,6 +192,7 @@ impl Translator<'_, '_> {
     fn function(&mut self) {
         let func = self.func;
         let cfg = Cfg::new(func);
+        self.nan = classify(func, &cfg);
         let entry = func.entry();
         for &block in cfg.reverse_postorder().iter().filter(|&&b| b != entry) {
             self.declare_block(block);
@@ -200,6 +209,7 @@ impl Translator<'_, '_> {
             }
             for &inst in &func.block(block).insts {
                 self.inst(inst);
+                self.translated(inst);
             }
             self.terminator(block);
         }
@@ -232,18 +242,28 @@ impl Translator<'_, '_> {
             InstData::Compare { op, args } => self.compare(*op, *args),
             InstData::Convert { op, to, arg } => self.convert(*op, *to, *arg),
             InstData::Select { cond, args } => {
-                let (cond, args) = (self.value(*cond), args.map(|v| self.value(v)));
+                let class = self.nan[func.result(inst)];
+                let (cond, args) = (self.value(*cond), args.map(|v| self.as_class(class, v)));
                 self.ins().select(cond, args[0], args[1])
             }
             InstData::Load { place } => self.load(place),
             InstData::Store { place, value } => return self.store(place, *value),
-            InstData::Copy { to, from } => return self.copy(to, from),
-            InstData::Clear { place } => return self.clear(place),
+            InstData::Copy { to, from } => {
+                self.settle();
+                return self.copy(to, from);
+            }
+            InstData::Clear { place } => {
+                self.settle();
+                return self.clear(place);
+            }
             InstData::Address { place } => self.address_of(place),
             InstData::Now => self.now(),
             InstData::Elapsed { place, unit_ns, ty } => self.elapsed(place, *unit_ns, *ty),
             InstData::Step { unit_ns, ty } => self.step(*unit_ns, *ty),
-            InstData::Call { func, refs, args } => return self.call(inst, *func, refs, args),
+            InstData::Call { func, refs, args } => {
+                self.settle();
+                return self.call(inst, *func, refs, args);
+            }
         };
         self.values[func.result(inst)] = Some(result);
     }

@@ -19,28 +19,10 @@ impl Translator<'_, '_> {
             UnaryOp::Not if ty == Type::I1 => self.ins().bxor_imm_u(x, 1),
             UnaryOp::Not => self.ins().bnot(x),
             UnaryOp::Neg => self.ins().ineg(x),
-            UnaryOp::Fneg => {
-                let negated = self.ins().fneg(x);
-                self.canonical(ty, negated)
-            }
-            UnaryOp::Fabs => {
-                let positive = self.ins().fabs(x);
-                self.canonical(ty, positive)
-            }
+            UnaryOp::Fneg => self.ins().fneg(x),
+            UnaryOp::Fabs => self.ins().fabs(x),
             UnaryOp::Fsqrt => self.ins().sqrt(x),
         }
-    }
-
-    /// For operations on the sign bit alone: Cranelift itself makes the NaN of arithmetic canonical.
-    fn canonical(&mut self, ty: Type, x: clif::Value) -> clif::Value {
-        let bits = if ty == Type::F32 {
-            0x7fc0_0000
-        } else {
-            0x7ff8_0000_0000_0000
-        };
-        let nan = self.constant(ty, bits);
-        let is_nan = self.ins().fcmp(FloatCC::Unordered, x, x);
-        self.ins().select(is_nan, nan, x)
     }
 
     pub(super) fn binary(&mut self, op: BinaryOp, args: [Value; 2]) -> clif::Value {
@@ -193,8 +175,9 @@ impl Translator<'_, '_> {
             CompareOp::Fne => self.ins().fcmp(FloatCC::NotEqual, x, y),
             CompareOp::Flt => self.ins().fcmp(FloatCC::LessThan, x, y),
             CompareOp::Fle => self.ins().fcmp(FloatCC::LessThanOrEqual, x, y),
-            CompareOp::Fgt => self.ins().fcmp(FloatCC::GreaterThan, x, y),
-            CompareOp::Fge => self.ins().fcmp(FloatCC::GreaterThanOrEqual, x, y),
+            // Choices by these are instructions for minimum and maximum if written as `less`.
+            CompareOp::Fgt => self.ins().fcmp(FloatCC::LessThan, y, x),
+            CompareOp::Fge => self.ins().fcmp(FloatCC::LessThanOrEqual, y, x),
         }
     }
 
@@ -220,9 +203,11 @@ impl Translator<'_, '_> {
             }
             ConvertOp::FloatToSint => self.float_to_sint(x, to),
             ConvertOp::FloatToUint => self.float_to_uint(x, to),
-            ConvertOp::FloatBits | ConvertOp::BitsFloat => {
+            ConvertOp::FloatBits => {
+                let x = self.exact(arg);
                 self.ins().bitcast(target, MemFlagsData::new(), x)
             }
+            ConvertOp::BitsFloat => self.ins().bitcast(target, MemFlagsData::new(), x),
         }
     }
 

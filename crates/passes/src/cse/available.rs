@@ -3,43 +3,77 @@
 //! Places that overlap are found without comparing all with all. Static places are kept by their
 //! scalar, with the bits of it that are known; a place with index values may overlap anything, so
 //! storing to one forgets its whole root, as do copies and clears. References may alias each other and the state.
+//! A value may be too old to be of use: then it is as if it were not known.
 
 use iecc_ir::{Index, Place, Projection, Root, Value};
 use std::collections::HashMap;
 
 /// Values at places.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Available {
     roots: HashMap<Root, Known>,
+    /// Instructions so far.
+    now: usize,
+    /// How many instructions ago a value may have been found.
+    memory: usize,
 }
 
 #[derive(Debug, Default)]
 struct Known {
-    scalars: HashMap<Place, Vec<(Option<u32>, Value)>>,
-    dynamic: HashMap<Place, Value>,
+    scalars: HashMap<Place, Vec<(Option<u32>, Found)>>,
+    dynamic: HashMap<Place, Found>,
+}
+
+/// A value, and when it was found.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    value: Value,
+    at: usize,
 }
 
 impl Available {
+    /// Nothing is known; what is found will be of use for so many instructions.
+    pub(super) fn new(memory: usize) -> Self {
+        Self {
+            roots: HashMap::new(),
+            now: 0,
+            memory,
+        }
+    }
+
+    /// One more instruction begins.
+    pub(super) fn next(&mut self) {
+        self.now += 1;
+    }
+
     /// The value at a place, if known.
     pub(super) fn get(&self, place: &Place) -> Option<Value> {
         let known = self.roots.get(&place.root)?;
-        if !place.is_static() {
-            return known.dynamic.get(place).copied();
-        }
-        let (scalar, bit) = split_bit(place);
-        let values = known.scalars.get(&scalar)?;
-        let found = values.iter().find(|(known_bit, _)| *known_bit == bit);
-        found.map(|(_, value)| *value)
+        let found = if place.is_static() {
+            let (scalar, bit) = split_bit(place);
+            let values = known.scalars.get(&scalar)?;
+            let same = values.iter().find(|(known_bit, _)| *known_bit == bit);
+            same.map(|(_, found)| found)?
+        } else {
+            known.dynamic.get(place)?
+        };
+        (self.now - found.at <= self.memory).then_some(found.value)
     }
 
     /// A place was found to hold a value.
     pub(super) fn loaded(&mut self, place: &Place, value: Value) {
+        let at = self.now;
+        let found = Found { value, at };
         let known = self.roots.entry(place.root).or_default();
         if place.is_static() {
             let (scalar, bit) = split_bit(place);
-            known.scalars.entry(scalar).or_default().push((bit, value));
+            let values = known.scalars.entry(scalar).or_default();
+            match values.iter_mut().find(|(known_bit, _)| *known_bit == bit) {
+                Some((_, old)) => *old = found,
+                None => values.push((bit, found)),
+            }
         } else {
-            known.dynamic.insert(place.clone(), value);
+            known.dynamic.insert(place.clone(), found);
         }
     }
 

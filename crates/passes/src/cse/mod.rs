@@ -16,11 +16,24 @@ use iecc_ir::analysis::{Cfg, Dominators};
 use iecc_ir::{BinaryOp, Block, Function, Inst, InstData, Module, Root, Terminator, Type, Value};
 use std::collections::HashMap;
 
+/// For so many instructions, constants not counted, a value of memory is kept for machine code. Loading it again is cheaper than
+/// keeping it any longer, in a register that others need or in another place of memory.
+const NEAR: usize = 48;
+
 /// Shares common subexpressions in every function.
 pub(crate) fn cse(module: &mut Module) {
+    share(module, usize::MAX);
+}
+
+/// The same, but loads again what was loaded or stored long before.
+pub(crate) fn cse_near(module: &mut Module) {
+    share(module, NEAR);
+}
+
+fn share(module: &mut Module, memory: usize) {
     let references = References::of(module);
     for (id, func) in module.funcs.iter_mut() {
-        Numbering::new(func, &|root| references.certain(id, root)).run();
+        Numbering::new(func, &|root| references.certain(id, root), memory).run();
     }
 }
 
@@ -47,10 +60,12 @@ struct Numbering<'f> {
     children: SecondaryMap<Block, Vec<Block>>,
     /// Whether a root is memory in every call.
     certain: &'f dyn Fn(Root) -> bool,
+    /// For how many instructions a value of memory is of use.
+    memory: usize,
 }
 
 impl<'f> Numbering<'f> {
-    fn new(func: &'f mut Function, certain: &'f dyn Fn(Root) -> bool) -> Self {
+    fn new(func: &'f mut Function, certain: &'f dyn Fn(Root) -> bool, memory: usize) -> Self {
         let cfg = Cfg::new(func);
         let dominators = Dominators::new(&cfg);
         let mut children: SecondaryMap<Block, Vec<Block>> = SecondaryMap::new();
@@ -69,6 +84,7 @@ impl<'f> Numbering<'f> {
             cfg,
             children,
             certain,
+            memory,
         }
     }
 
@@ -151,10 +167,13 @@ impl<'f> Numbering<'f> {
     }
 
     fn block(&mut self, block: Block) {
-        let mut available = Available::default();
+        let mut available = Available::new(self.memory);
         let mut kept = Vec::new();
         for inst in std::mem::take(&mut self.func.block_mut(block).insts) {
             let mut data = self.func.inst(inst).clone();
+            if !matches!(data, InstData::Const { .. }) {
+                available.next();
+            }
             data.map_values(|v| self.resolve(v, &mut kept));
             *self.func.inst_mut(inst) = data;
             let redundant = if self.func.inst(inst).is_pure() {

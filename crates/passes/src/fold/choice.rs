@@ -1,7 +1,7 @@
 //! Rules for `select`.
 
 use super::simplify::{Rewriter, Step, binary, not};
-use iecc_ir::{BinaryOp, InstData, Type, Value};
+use iecc_ir::{BinaryOp, CompareOp, InstData, Type, Value};
 
 /// Simplifies `select cond, yes, no`.
 pub(super) fn select(rewriter: &mut Rewriter<'_>, cond: Value, [yes, no]: [Value; 2]) -> Step {
@@ -22,7 +22,10 @@ pub(super) fn select(rewriter: &mut Rewriter<'_>, cond: Value, [yes, no]: [Value
             return step;
         }
     }
-    nested(rewriter, cond, yes, no)
+    match limits(rewriter, cond, yes, no) {
+        Step::Keep => nested(rewriter, cond, yes, no),
+        limited => limited,
+    }
 }
 
 fn data(cond: Value, yes: Value, no: Value) -> Step {
@@ -108,4 +111,58 @@ fn nested(rewriter: &mut Rewriter<'_>, cond: Value, yes: Value, no: Value) -> St
 
 fn join(rewriter: &mut Rewriter<'_>, op: BinaryOp, a: Value, b: Value) -> Value {
     rewriter.emit(InstData::Binary { op, args: [a, b] }, Type::I1)
+}
+
+/// `x > 9 ? 9 : t` where t is `x < 1 ? 1 : x` becomes `t > 9 ? 9 : t`, a minimum of a maximum: t is
+/// either x, or 1 where x is not above 9 and 1 is not either. NaN stays NaN in both.
+fn limits(rewriter: &mut Rewriter<'_>, cond: Value, yes: Value, no: Value) -> Step {
+    let Some((inner, [bound, inside])) = rewriter.select_of(no) else {
+        return Step::Keep;
+    };
+    let (Some(outer), Some(inner)) = (
+        float_bound(rewriter, cond, inside),
+        float_bound(rewriter, inner, inside),
+    ) else {
+        return Step::Keep;
+    };
+    let apart = match (outer.op, inner.op) {
+        (CompareOp::Fgt, CompareOp::Flt) => inner.limit <= outer.limit,
+        (CompareOp::Flt, CompareOp::Fgt) => inner.limit >= outer.limit,
+        _ => false,
+    };
+    if !(apart && yes == outer.value && bound == inner.value) {
+        return Step::Keep;
+    }
+    let compare = InstData::Compare {
+        op: outer.op,
+        args: [no, yes],
+    };
+    let cond = rewriter.emit(compare, Type::I1);
+    data(cond, yes, no)
+}
+
+/// `x op limit` with a constant.
+struct FloatBound {
+    op: CompareOp,
+    value: Value,
+    limit: f64,
+}
+
+/// A comparison of `x` with a constant float, written with `x` first.
+fn float_bound(rewriter: &Rewriter<'_>, cond: Value, x: Value) -> Option<FloatBound> {
+    let Some(InstData::Compare { op, args }) = rewriter.func.def_inst(cond) else {
+        return None;
+    };
+    let (op, value) = match args {
+        [first, value] if *first == x => (*op, *value),
+        [value, second] if *second == x => (op.swapped(), *value),
+        _ => return None,
+    };
+    let bits = rewriter.constant(value)?;
+    let limit = match rewriter.ty(value) {
+        Type::F32 => f64::from(f32::from_bits(bits as u32)),
+        Type::F64 => f64::from_bits(bits),
+        Type::I1 | Type::I8 | Type::I16 | Type::I32 | Type::I64 => return None,
+    };
+    Some(FloatBound { op, value, limit })
 }

@@ -1,9 +1,13 @@
 //! Small choices: a branch around a handful of cheap operations costs more than doing them.
+//!
+//! A store in an arm becomes a store behind both, of what the arm stores or what was there before.
 
 use crate::rewrite::{Replacements, remove_unreachable};
 use cranelift_entity::{EntitySet, SecondaryMap};
 use iecc_ir::analysis::Cfg;
-use iecc_ir::{BinaryOp, Block, Function, InstData, Module, Target, Terminator, UnaryOp, Value};
+use iecc_ir::{
+    BinaryOp, Block, Function, InstData, Module, Place, Root, Target, Terminator, UnaryOp, Value,
+};
 
 /// How many operations both arms may have together, and how many choices may come of it.
 const MAX_OPERATIONS: usize = 6;
@@ -12,12 +16,14 @@ const MAX_CHOICES: usize = 3;
 /// Converts branches whose arms are cheap and meet at once, inner ones first. Loops and faults
 /// elsewhere do not matter.
 pub(crate) fn if_convert_small(module: &mut Module) {
+    // Storing what was loaded makes a bit of any byte that an address may have put there.
+    let with_stores = !module.has_addresses();
     for func in module.funcs.values_mut() {
-        convert(func);
+        convert(func, with_stores);
     }
 }
 
-fn convert(func: &mut Function) {
+fn convert(func: &mut Function, with_stores: bool) {
     remove_unreachable(func);
     let mut ways_in: SecondaryMap<Block, u32> = SecondaryMap::new();
     for &block in &func.layout {
@@ -32,7 +38,7 @@ fn convert(func: &mut Function) {
     };
     let order = Cfg::new(func).reverse_postorder().to_vec();
     for &block in order.iter().rev() {
-        while let Some(choice) = Choice::at(func, block, &conversion.ways_in) {
+        while let Some(choice) = Choice::at(func, block, &conversion.ways_in, with_stores) {
             conversion.write(func, block, choice);
         }
     }
@@ -51,10 +57,12 @@ impl Conversion {
     fn write(&mut self, func: &mut Function, block: Block, choice: Choice) {
         let origin = func.block(block).terminator_origin;
         for arm in choice.arms.into_iter().flatten() {
-            let insts = std::mem::take(&mut func.block_mut(arm).insts);
+            let mut insts = std::mem::take(&mut func.block_mut(arm).insts);
+            insts.retain(|&inst| stored(func.inst(inst)).is_none());
             func.block_mut(block).insts.extend(insts);
             self.gone.insert(arm);
         }
+        sink(func, block, &choice);
         let [yes, no] = choice.ends;
         let mut target = Target::new(yes.block);
         for (&yes, &no) in yes.args.iter().zip(&no.args) {
@@ -98,10 +106,17 @@ struct Choice {
     arms: [Option<Block>; 2],
     /// What each arm passes to the block where they meet.
     ends: [Target; 2],
+    /// What each arm leaves where; nothing where `None`.
+    stores: Vec<(Place, [Option<Value>; 2])>,
 }
 
 impl Choice {
-    fn at(func: &Function, block: Block, ways_in: &SecondaryMap<Block, u32>) -> Option<Self> {
+    fn at(
+        func: &Function,
+        block: Block,
+        ways_in: &SecondaryMap<Block, u32>,
+        with_stores: bool,
+    ) -> Option<Self> {
         let Terminator::Brif {
             cond,
             then,
@@ -122,21 +137,25 @@ impl Choice {
             let (a, b) = (a?, b?);
             (a.1.block == b.1.block && a.1.block != block).then_some((a, b))
         })?;
+        let arms = [a.0, b.0];
         let choice = Self {
             cond: *cond,
-            arms: [a.0, b.0],
+            arms,
             ends: [a.1, b.1],
+            stores: stores(func, arms),
         };
-        choice.is_cheap(func).then_some(choice)
+        let can_sink = choice.stores.is_empty() || (with_stores && are_apart(&choice.stores));
+        (can_sink && choice.is_cheap(func)).then_some(choice)
     }
 
     fn is_cheap(&self, func: &Function) -> bool {
         let arms = self.arms.iter().flatten();
         let insts = arms.flat_map(|&arm| &func.block(arm).insts);
-        let is_constant = |data: &InstData| matches!(data, InstData::Const { .. });
-        let operations = insts.filter(|&&inst| !is_constant(func.inst(inst))).count();
+        let is_free =
+            |data: &InstData| matches!(data, InstData::Const { .. } | InstData::Store { .. });
+        let operations = insts.filter(|&&inst| !is_free(func.inst(inst))).count();
         let differ = self.ends[0].args.iter().zip(&self.ends[1].args);
-        let choices = differ.filter(|(a, b)| a != b).count();
+        let choices = differ.filter(|(a, b)| a != b).count() + self.stores.len();
         operations <= MAX_OPERATIONS && choices <= MAX_CHOICES
     }
 }
@@ -148,7 +167,15 @@ fn arm(
     ways_in: &SecondaryMap<Block, u32>,
 ) -> Option<(Option<Block>, Target)> {
     let data = func.block(target.block);
-    let cheap = data.insts.iter().all(|&inst| is_cheap(func.inst(inst)));
+    let mut has_stored = false;
+    let cheap = data.insts.iter().all(|&inst| {
+        let data = func.inst(inst);
+        let is_store = is_sinkable(func, data);
+        // A load behind a store of its arm would have to see it.
+        let in_order = !(has_stored && matches!(data, InstData::Load { .. }));
+        has_stored |= is_store;
+        in_order && (is_store || is_cheap(data))
+    });
     match func.terminator(target.block) {
         Terminator::Jump(end) if cheap && data.params.is_empty() && ways_in[target.block] == 1 => {
             Some((Some(target.block), end.clone()))
@@ -168,5 +195,79 @@ fn is_cheap(data: &InstData) -> bool {
         // Every load is legal; one from a fixed place is a few cycles.
         InstData::Load { place } => place.is_static(),
         data => data.is_pure(),
+    }
+}
+
+/// A store of an integer at a fixed place that can be loaded.
+fn is_sinkable(func: &Function, data: &InstData) -> bool {
+    stored(data).is_some_and(|(place, value)| {
+        let is_known = match place.root {
+            Root::State | Root::Ref(_) | Root::Local(_) => place.is_static(),
+            Root::Input | Root::Output | Root::Deref { .. } => false,
+        };
+        is_known && func.value_type(value).is_int()
+    })
+}
+
+fn stored(data: &InstData) -> Option<(&Place, Value)> {
+    match data {
+        InstData::Store { place, value } => Some((place, *value)),
+        _ => None,
+    }
+}
+
+/// What two arms leave in memory, place by place.
+fn stores(func: &Function, arms: [Option<Block>; 2]) -> Vec<(Place, [Option<Value>; 2])> {
+    let mut all: Vec<(Place, [Option<Value>; 2])> = Vec::new();
+    for (side, arm) in arms.into_iter().enumerate() {
+        let insts = arm.into_iter().flat_map(|arm| &func.block(arm).insts);
+        for (place, value) in insts.filter_map(|&inst| stored(func.inst(inst))) {
+            match all.iter_mut().find(|(known, _)| known == place) {
+                Some((_, values)) => values[side] = Some(value),
+                None => {
+                    let mut values = [None; 2];
+                    values[side] = Some(value);
+                    all.push((place.clone(), values));
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Whether no two places can be the same memory.
+fn are_apart(stores: &[(Place, [Option<Value>; 2])]) -> bool {
+    let meet = |a: &Place, b: &Place| match a.root == b.root {
+        true => a.may_overlap(b),
+        false => a.root.may_alias() && b.root.may_alias(),
+    };
+    let rest = |index: usize| stores[index + 1..].iter();
+    stores
+        .iter()
+        .enumerate()
+        .all(|(index, (a, _))| rest(index).all(|(b, _)| !meet(a, b)))
+}
+
+/// Stores behind the arms: what was there is loaded before anything is stored.
+fn sink(func: &mut Function, block: Block, choice: &Choice) {
+    let origin = func.block(block).terminator_origin;
+    let mut values = Vec::with_capacity(choice.stores.len());
+    for (place, sides) in &choice.stores {
+        let ty = func.value_type(sides[0].or(sides[1]).expect("one arm stores"));
+        let args = sides.map(|side| {
+            side.unwrap_or_else(|| {
+                let place = place.clone();
+                let inst = func.append_inst(block, InstData::Load { place }, &[ty], origin);
+                func.result(inst)
+            })
+        });
+        let cond = choice.cond;
+        let data = InstData::Select { cond, args };
+        let inst = func.append_inst(block, data, &[ty], origin);
+        values.push(func.result(inst));
+    }
+    for ((place, _), value) in choice.stores.iter().zip(values) {
+        let place = place.clone();
+        func.append_inst(block, InstData::Store { place, value }, &[], origin);
     }
 }

@@ -7,3 +7,4 @@ mod fold;
 mod inline;
 mod random;
 mod size;
+mod software;

@@ -1,0 +1,216 @@
+//! What is done for machine code alone: choices instead of branches, short lives of values.
+
+use crate::check::{check, optimised};
+use iecc_ir::{InstData, print_module};
+use std::fmt::Write;
+
+const HEADER: &str = "module m
+struct T { n: i32, b: i1 }
+state { t: T, u: T, n: i32, f: f32, m: i1, a: [4 x i32] }
+input { p: i1, q: i1, x: i32, f: f32 }
+output { x: i32, f: f32 }
+scan @scan
+";
+
+/// `IF p THEN m := TRUE ELSIF q THEN m := FALSE`: one store, of what is set, cleared or kept.
+#[test]
+fn stores_in_arms_become_one_store_of_a_choice() {
+    check(
+        &["if_convert_small"],
+        HEADER,
+        "fn @scan[]() -> () {
+b0:
+  v0: i1 = load input.p
+  v1: i1 = load input.q
+  v2: i1 = const 1
+  v3: i1 = const 0
+  brif v0, b1, b2
+b1:
+  store state.m, v2
+  jump b4
+b2:
+  brif v1, b3, b4
+b3:
+  store state.m, v3
+  jump b4
+b4:
+  return
+}
+",
+        "fn @scan[]() -> () {
+b0:
+  v0: i1 = load input.p
+  v1: i1 = load input.q
+  v2: i1 = const 1
+  v3: i1 = const 0
+  v4: i1 = load state.m
+  v5: i1 = select v1, v3, v4
+  v6: i1 = select v0, v2, v5
+  store state.m, v6
+  return
+}
+",
+    );
+}
+
+/// Both arms store one place, and one of them another: all loads come before all stores.
+#[test]
+fn arms_may_store_different_places() {
+    check(
+        &["if_convert_small"],
+        HEADER,
+        "fn @scan[]() -> () {
+b0:
+  v0: i1 = load input.p
+  v1: i32 = load input.x
+  brif v0, b1, b2
+b1:
+  v2: i32 = load state.t.n
+  store state.n, v2
+  store state.t.n, v1
+  jump b3
+b2:
+  store state.n, v1
+  jump b3
+b3:
+  return
+}
+",
+        "fn @scan[]() -> () {
+b0:
+  v0: i1 = load input.p
+  v1: i32 = load input.x
+  v2: i32 = load state.t.n
+  v3: i32 = select v0, v2, v1
+  v4: i32 = load state.t.n
+  v5: i32 = select v0, v1, v4
+  store state.n, v3
+  store state.t.n, v5
+  return
+}
+",
+    );
+}
+
+/// Where a load would have to see a store of its arm, where references may be the same memory,
+/// where the old value cannot be loaded, and of floats, which have no choice without a branch.
+#[test]
+fn other_stores_stay_in_their_arms() {
+    for arm in [
+        "store state.n, v1\n  v2: i32 = load state.n\n  store state.t.n, v2",
+        "store output.x, v1",
+        "store state.a[v1], v1",
+        "store state.f, v9",
+    ] {
+        let text = format!(
+            "fn @scan[]() -> () {{\nb0:\n  v0: i1 = load input.p\n  v1: i32 = load input.x\n  \
+             v9: f32 = load input.f\n  brif v0, b1, b2\nb1:\n  {arm}\n  jump b2\nb2:\n  return\n}}\n"
+        );
+        check(&["if_convert_small"], HEADER, &text, &text);
+    }
+    let text = "fn @two[a: T, b: T](i1) -> () {
+b0(v0: i1):
+  v1: i32 = const 1
+  v2: i32 = const 2
+  brif v0, b1, b2
+b1:
+  store a.n, v1
+  jump b3
+b2:
+  store b.n, v2
+  jump b3
+b3:
+  return
+}
+fn @scan[]() -> () {
+b0:
+  v0: i1 = load input.p
+  call @two[state.t, state.t](v0)
+  call @two[state.t, state.u](v0)
+  return
+}
+";
+    check(&["if_convert_small"], HEADER, text, text);
+}
+
+/// `x > 9 ? 9 : (x < 1 ? 1 : x)`: the outer comparison looks at the inner choice.
+#[test]
+fn limits_of_a_float_are_a_minimum_of_a_maximum() {
+    let text = |compared: &str, inner: &str, limits: [&str; 2]| {
+        let [outer, lower] = limits;
+        format!(
+            "fn @scan[]() -> () {{
+b0:
+  v0: f32 = load input.f
+  v1: f32 = const {outer}
+  v2: f32 = const {lower}
+  v3: i1 = {inner} v0, v2
+  v4: f32 = select v3, v2, v0
+  v5: i1 = {compared}
+  v6: f32 = select v5, v1, v4
+  store output.f, v6
+  return
+}}
+"
+        )
+    };
+    for (before, after, inner, limits) in [
+        ("fgt v0, v1", "fgt v4, v1", "flt", ["9.0", "1.0"]),
+        ("flt v1, v0", "fgt v4, v1", "flt", ["9.0", "9.0"]),
+        ("flt v0, v1", "flt v4, v1", "fgt", ["-2.0", "5.0"]),
+        // The limits cross, or the comparison is true with a limit itself.
+        ("fgt v0, v1", "fgt v0, v1", "flt", ["1.0", "9.0"]),
+        ("fge v0, v1", "fge v0, v1", "flt", ["9.0", "1.0"]),
+        ("fgt v0, v1", "fgt v0, v1", "fgt", ["9.0", "1.0"]),
+    ] {
+        let [before, after] = [before, after].map(|text_| text(text_, inner, limits));
+        check(&["fold", "dce"], HEADER, &before, &after);
+    }
+}
+
+/// A store, many others, and a load of the same place.
+fn load_after(stores: usize) -> String {
+    let mut text =
+        "fn @scan[]() -> () {\nb0:\n  v0: i32 = load input.x\n  store state.n, v0\n".to_owned();
+    for index in 0..stores {
+        writeln!(text, "  store state.a[{}], v0", index % 4).unwrap();
+    }
+    text + "  v1: i32 = load state.n\n  store output.x, v1\n  return\n}\n"
+}
+
+#[test]
+fn what_was_stored_long_before_is_loaded_again() {
+    for (pass, stores, loads) in [("cse_near", 10, 1), ("cse_near", 100, 2), ("cse", 100, 1)] {
+        let module = optimised(&[pass], &format!("{HEADER}{}", load_after(stores)));
+        let scan = &module.funcs[module.scan];
+        let insts = &scan.block(scan.entry()).insts;
+        let found = insts
+            .iter()
+            .filter(|&&inst| matches!(scan.inst(inst), InstData::Load { .. }));
+        assert_eq!(found.count(), loads, "{pass} {stores}");
+    }
+}
+
+/// A function that is one block is put in place of its calls; one with a branch is not.
+#[test]
+fn straight_functions_are_inlined_wherever_they_are_called() {
+    let mut body = "b0:\n  v0: i32 = load t.n\n".to_owned();
+    for value in 1..40 {
+        writeln!(body, "  v{value}: i32 = add v{}, v0", value - 1).unwrap();
+    }
+    body += "  store t.n, v39\n";
+    let scan =
+        "fn @scan[]() -> () {\nb0:\n  call @f[state.t]()\n  call @f[state.u]()\n  return\n}\n";
+    for (end, calls) in [
+        ("  return\n", 0),
+        (
+            "  v40: i1 = load t.b\n  brif v40, b1, b2\nb1:\n  store t.n, v0\n  return\nb2:\n  return\n",
+            2,
+        ),
+    ] {
+        let text = format!("{HEADER}fn @f[t: T]() -> () {{\n{body}{end}}}\n{scan}");
+        let module = optimised(&["inline_small", "inline_straight"], &text);
+        let found = print_module(&module).matches("call @f").count();
+        assert_eq!(found, calls);
+    }
+}
