@@ -36,16 +36,14 @@ pub fn write_artifacts(folder: &Path, artifacts: &[Artifact]) -> Result<Vec<Path
 /// # Errors
 /// E6013 if it cannot be written.
 pub fn write_file(path: &Path, text: &str) -> Result<(), Diagnostic> {
-    let path = match path.parent() {
-        Some(folder) if folder.as_os_str().is_empty() => &Path::new(".").join(path),
-        Some(_) | None => path,
-    };
     let failed = |error: io::Error| cannot_write(path, &error);
     if path.file_name().is_none() {
         return Err(failed(io::ErrorKind::IsADirectory.into()));
     }
-    let file = write(path, text.as_bytes()).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
+    // A name alone has no folder that could be opened.
+    let place = Path::new(".").join(path);
+    let file = write(&place, text.as_bytes()).map_err(failed)?;
+    file.persist(&place).map_err(|error| failed(error.error))?;
     Ok(())
 }
 

@@ -91,6 +91,8 @@ pub(super) fn fault(module: &Module, test: &Test, fault: Fault) -> Diagnostic {
     let span = origin.and_then(|origin| origin.span).unwrap_or(test.span);
     let diagnostic = Diagnostic::new(Code::E6091, span, message);
     match origin {
+        // What it is in is said already.
+        Some(origin) if origin.label.starts_with("TEST ") => diagnostic,
         Some(origin) => diagnostic.label(format!("in {}", origin.label)),
         None => diagnostic,
     }

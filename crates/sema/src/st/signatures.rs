@@ -154,11 +154,18 @@ impl Analysis<'_> {
         }
         for decl in &unit.arena[variables] {
             let owned = self.pou_scope(id);
-            let mut ty = self.variable_type(owned.as_scope(), decl);
-            if decl.edge.is_some() && !self.edge_fits(unit_id, kind, section.kind, decl, ty) {
-                ty = TypeId::ERROR;
+            let names = &unit.arena[decl.names];
+            // Each name has the type of its own argument.
+            let bound = |ident: &st::Ident| owned.open_type(ident.name);
+            let mut declared = match names.iter().all(|ident| bound(ident).is_some()) {
+                true => TypeId::ERROR,
+                false => self.variable_type(owned.as_scope(), decl),
+            };
+            if decl.edge.is_some() && !self.edge_fits(unit_id, kind, section.kind, decl, declared) {
+                declared = TypeId::ERROR;
             }
-            for ident in &unit.arena[decl.names] {
+            for ident in names {
+                let ty = bound(ident).unwrap_or(declared);
                 let initial = decl.initial.map(|expr| Initial {
                     unit: unit_id,
                     expr,
@@ -283,12 +290,6 @@ impl Analysis<'_> {
 
     fn variable_type(&mut self, scope: TypeScope<'_>, decl: &st::VarDecl) -> TypeId {
         let unit = self.unit(scope.unit);
-        for ident in &unit.arena[decl.names] {
-            let open = scope.bindings.map_or(&[][..], |bindings| &bindings.open);
-            if let Some((_, ty)) = open.iter().find(|(name, _)| *name == ident.name) {
-                return *ty;
-            }
-        }
         let ty = self.type_of_spec(scope, decl.ty);
         self.complete_contained(ty, unit.span(unit.arena[decl.ty].range))
     }
@@ -498,6 +499,12 @@ pub(crate) struct OwnedScope {
 }
 
 impl OwnedScope {
+    /// The type of an open string or array, where a call has given it one.
+    fn open_type(&self, name: iecc_ast::Symbol) -> Option<TypeId> {
+        let mut open = self.bindings.open.iter();
+        open.find(|(known, _)| *known == name).map(|(_, ty)| *ty)
+    }
+
     pub(crate) fn as_scope(&self) -> TypeScope<'_> {
         TypeScope {
             unit: self.unit,
