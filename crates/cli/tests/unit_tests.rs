@@ -249,7 +249,14 @@ fn elements(text: &str) -> Vec<(String, Vec<(String, String)>)> {
         match reader.read_event().expect("well-formed XML") {
             Event::Start(element) | Event::Empty(element) => found.push(attributes(&element)),
             Event::Eof => return found,
-            _ => {}
+            Event::End(_)
+            | Event::Text(_)
+            | Event::CData(_)
+            | Event::Comment(_)
+            | Event::Decl(_)
+            | Event::PI(_)
+            | Event::DocType(_)
+            | Event::GeneralRef(_) => {}
         }
     }
 }
