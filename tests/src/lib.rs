@@ -11,6 +11,7 @@ pub mod leaves;
 pub mod mutate;
 pub mod one_block;
 pub mod random_ir;
+pub mod random_st;
 pub mod rng;
 pub mod rung_text;
 pub mod runs;

@@ -1,0 +1,126 @@
+//! Runs a random program on the engines for software and compares outputs, faults and the whole state
+//! after every scan.
+
+use super::{Options, random_program};
+use crate::differential::{Agreement, compare_engines, interpreter};
+use crate::rng::Rng;
+use crate::stimulus::random_stimulus;
+use iecc_diag::{Diagnostics, Severity, render_text};
+use iecc_driver::{FrontOptions, OnFault, Sources, compile};
+use iecc_ir::{Module, Region, verify};
+use iecc_jit::Jit;
+use iecc_passes::{SOFTWARE, Settings, run_pipeline};
+use iecc_source::SourceMap;
+use iecc_target::{Engine, region_bytes};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Scans of a program.
+const SCANS: usize = 12;
+
+/// How a run went.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// Scans that ended with a fault.
+    pub faults: usize,
+    /// All scans.
+    pub scans: usize,
+}
+
+/// Generates the program of a seed and runs it under the policy for faults that the seed gives.
+///
+/// # Errors
+/// What is wrong, with a program that was shrunk.
+pub fn check_seed(seed: u64, options: Options) -> Result<Outcome, String> {
+    let draft = random_program(seed, options);
+    let policy = policy(seed);
+    check(draft.text(), policy, seed).map_err(|what| {
+        let kind = kind_of(&what);
+        let fails = |text: &str| {
+            let again = check(text, policy, seed);
+            again.is_err_and(|what| kind_of(&what) == kind)
+        };
+        let least = draft.shrink(fails);
+        let what = check(&least, policy, seed).expect_err("it failed while shrinking");
+        format!("seed {seed}, {policy:?}: {what}\n{least}")
+    })
+}
+
+/// Which policy a seed runs under.
+pub fn policy(seed: u64) -> OnFault {
+    if seed.is_multiple_of(2) {
+        OnFault::Trap
+    } else {
+        OnFault::Continue
+    }
+}
+
+/// The first word: one kind of failure does not become another while shrinking.
+fn kind_of(what: &str) -> &str {
+    what.split_whitespace().next().unwrap_or_default()
+}
+
+/// Runs a program.
+///
+/// # Errors
+/// What is wrong: it was refused, the compiler panicked, or engines differ.
+pub fn check(text: &str, policy: OnFault, seed: u64) -> Result<Outcome, String> {
+    let checked = catch_unwind(AssertUnwindSafe(|| {
+        let module = module(text, policy)?;
+        compare(&module, seed)
+    }));
+    checked.unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+        Err(format!("panicked: {}", text.unwrap_or_default()))
+    })
+}
+
+fn module(text: &str, policy: OnFault) -> Result<Module, String> {
+    let (mut map, mut found) = (SourceMap::new(), Diagnostics::new());
+    let file = map.add("random.st", text);
+    let sources = Sources::text(&mut map, vec![file]);
+    let options = FrontOptions {
+        on_fault: policy,
+        ..FrontOptions::default()
+    };
+    compile(&map, &sources, &options, &mut found).ok_or_else(|| {
+        let errors = found.iter().filter(|said| said.severity == Severity::Error);
+        let first = errors.map(|said| format!("{:?} {}", said.code, render_text(&map, said, false)));
+        first.take(1).collect()
+    })
+}
+
+/// The module as lowered, on the interpreter, against what the passes make of it, on the interpreter and in
+/// machine code.
+fn compare(module: &Module, seed: u64) -> Result<Outcome, String> {
+    let mut optimised = module.clone();
+    run_pipeline(&mut optimised, SOFTWARE, &Settings::default(), &mut |_, _| {})
+        .expect("the passes exist");
+    let stimulus = random_stimulus(module, &mut Rng::new(seed), SCANS);
+    compare_engines(
+        module,
+        &mut interpreter(module),
+        &mut interpreter(&optimised),
+        Agreement::All,
+        &stimulus,
+    )
+    .map_err(|difference| format!("passes change it: {difference}"))?;
+    let verified = verify(&optimised).map_err(|errors| format!("unverified {}", errors[0]))?;
+    let mut jit = Jit::new(verified).map_err(|errors| format!("untranslated {errors:?}"))?;
+    compare_engines(
+        module,
+        &mut interpreter(module),
+        &mut jit,
+        Agreement::All,
+        &stimulus,
+    )
+    .map_err(|difference| format!("jit differs: {difference}"))?;
+    let mut reference = interpreter(module);
+    let mut outputs = region_bytes(module, Region::Output);
+    let scans = stimulus.iter();
+    let ended = scans.map(|scan| reference.step(scan.now_ns, &scan.inputs, &mut outputs));
+    Ok(Outcome {
+        faults: ended.filter(Result::is_err).count(),
+        scans: SCANS,
+    })
+}

@@ -1,0 +1,611 @@
+//! Expressions of a wanted type.
+//!
+//! Operands that decide about faults at compile time are never constant: a sum of two literals
+//! could be refused for its overflow. Literals stand on the right.
+
+use super::Generator;
+use super::scope::{Route, Step};
+use super::signatures::Way;
+use super::types::{Elementary, Kind, Type, Types};
+
+/// How deep expressions nest.
+const DEPTH: u32 = 3;
+
+const COMPARISONS: [&str; 6] = ["=", "<>", "<", "<=", ">", ">="];
+
+impl Generator<'_> {
+    pub(super) fn put(&mut self, text: &str) {
+        self.draft.put(text);
+    }
+
+    /// Writes something that a literal of its type can stand for.
+    fn marked(&mut self, ty: Type, write: impl FnOnce(&mut Self)) {
+        let start = self.draft.position();
+        write(self);
+        let plain = self.types.plain(ty);
+        self.draft.mark(start, &plain);
+    }
+
+    /// An expression or a literal for something of a type of one value, perhaps of a type that becomes
+    /// it without being told to.
+    pub(super) fn value(&mut self, ty: Type) {
+        let depth = self.rng.below(DEPTH as usize + 1) as u32;
+        match self.narrower(ty) {
+            Some(narrow) => self.operand(narrow, depth),
+            None => self.any_value(ty, depth),
+        }
+    }
+
+    /// Now and then a type that becomes another without being told to.
+    fn narrower(&mut self, ty: Type) -> Option<Type> {
+        let Type::Elementary(to) = ty else {
+            return None;
+        };
+        let from = Elementary::ALL.iter().copied();
+        let narrow: Vec<Elementary> = from.filter(|from| from.widens_to(to)).collect();
+        let some = !narrow.is_empty() && self.rng.one_in(6);
+        some.then(|| Type::Elementary(self.rng.pick(&narrow)))
+    }
+
+    fn any_value(&mut self, ty: Type, depth: u32) {
+        if !self.rng.one_in(4) {
+            return self.operand(ty, depth);
+        }
+        let bare = self.rng.one_in(2);
+        let literal = match ty {
+            Type::Elementary(ty) if bare => self.bare_literal(ty),
+            _ => self.literal(ty),
+        };
+        self.marked(ty, |this| this.put(&literal));
+    }
+
+    /// An expression that is not constant, if there is any way to it.
+    pub(super) fn operand(&mut self, ty: Type, depth: u32) {
+        self.marked(ty, |this| {
+            if (depth == 0 || this.rng.one_in(4)) && this.variable(ty) {
+                return;
+            }
+            match ty {
+                Type::Elementary(ty) if depth > 0 => this.operation(ty, depth - 1),
+                Type::Elementary(ty) => this.converted(ty, 0),
+                Type::Text { wide, .. } if depth > 0 => this.text(wide, depth - 1),
+                Type::Subrange(at) => {
+                    let base = this.types.subranges[at].base;
+                    this.operand(Type::Elementary(base), depth);
+                }
+                Type::Enumeration(_) if depth > 0 => this.selection(ty, depth - 1),
+                Type::Text { .. } | Type::Enumeration(_) => {
+                    let literal = this.literal(ty);
+                    this.put(&literal);
+                }
+                Type::Reference(_) => this.reference(ty),
+                Type::Array(_) | Type::Structure(_) | Type::Instance(_) => {
+                    unreachable!("these have no expressions")
+                }
+            }
+        });
+    }
+
+    /// A way that fits, written with its subscripts; says whether there is one.
+    pub(super) fn way(&mut self, fits: impl Fn(&Route) -> bool) -> bool {
+        let routes = self.routes.iter().enumerate();
+        let fitting: Vec<usize> = routes.filter(|(_, r)| fits(r)).map(|(at, _)| at).collect();
+        if fitting.is_empty() {
+            return false;
+        }
+        let route = self.routes[self.rng.pick(&fitting)].clone();
+        self.write_route(&route);
+        true
+    }
+
+    pub(super) fn write_route(&mut self, route: &Route) {
+        for step in &route.steps {
+            match step {
+                Step::Word(word) => self.put(word),
+                Step::Index(bounds) => {
+                    self.put("[");
+                    for (position, &(low, high)) in bounds.iter().enumerate() {
+                        self.put(if position > 0 { ", " } else { "" });
+                        self.subscript(low, high);
+                    }
+                    self.put("]");
+                }
+                Step::Character(length) => {
+                    self.put("[");
+                    self.subscript(1, i64::from(*length));
+                    self.put("]");
+                }
+            }
+        }
+    }
+
+    /// A subscript, seldom one outside of the bounds.
+    fn subscript(&mut self, low: i64, high: i64) {
+        let start = self.draft.position();
+        let inside = low + self.rng.below((high - low + 1) as usize) as i64;
+        match self.rng.below(8) {
+            0 => {
+                let ty = self.rng.pick(&[Elementary::Int, Elementary::Dint, Elementary::Lint]);
+                let ty = Type::Elementary(ty);
+                if !self.variable(ty) {
+                    self.put(&inside.to_string());
+                }
+            }
+            1 | 2 => {
+                self.put(&format!("LIMIT(INT#{low}, "));
+                self.operand(Type::INT, 1);
+                self.put(&format!(", INT#{high})"));
+            }
+            3 => {
+                self.put(&format!("({low} + ABS("));
+                self.operand(Type::INT, 1);
+                self.put(&format!(" MOD {}))", high - low + 1));
+            }
+            _ => self.put(&inside.to_string()),
+        }
+        self.draft.mark(start, &inside.to_string());
+    }
+
+    /// A variable, or a part of one, that has a type; strings of any length count as one type.
+    pub(super) fn variable(&mut self, ty: Type) -> bool {
+        let subranges: Vec<Elementary> = self.types.subranges.iter().map(|r| r.base).collect();
+        self.way(|route| match (route.ty, ty) {
+            (Type::Subrange(from), Type::Elementary(to)) => subranges[from] == to,
+            (Type::Text { wide, .. }, Type::Text { wide: wanted, .. }) => wide == wanted,
+            (from, to) => from == to,
+        })
+    }
+
+    fn operation(&mut self, ty: Elementary, depth: u32) {
+        match self.rng.below(10) {
+            0 => return self.selection(Type::Elementary(ty), depth),
+            1 => return self.converted(ty, depth),
+            2 | 3 if self.call_of(Type::Elementary(ty)) => return,
+            _ => {}
+        }
+        match ty.kind() {
+            Kind::Bool => self.condition(depth),
+            Kind::Signed | Kind::Unsigned => self.integer_operation(ty, depth),
+            Kind::Bits => self.bit_operation(ty, depth),
+            Kind::Real => self.real_operation(ty, depth),
+            Kind::Duration => self.duration(ty, depth),
+            Kind::Clock | Kind::Moment => self.shifted_time(ty, depth),
+            Kind::Date | Kind::Character => self.selection(Type::Elementary(ty), depth),
+        }
+    }
+
+    /// Two operands in parentheses; each can stand for both if it has the type of the result.
+    fn binary(&mut self, op: &str, types: [Type; 3], depth: u32) {
+        let [left, right, result] = types;
+        let start = self.draft.position();
+        self.put("(");
+        let first = self.draft.position();
+        // Times of the short and the long family do not mix in differences of dates.
+        let may_narrow = left == right && (result == left || result == Type::BOOL);
+        let narrow = if may_narrow { self.narrower(left) } else { None };
+        self.operand(narrow.unwrap_or(left), depth);
+        let middle = self.draft.position();
+        self.put(&format!(" {op} "));
+        let second = self.draft.position();
+        if narrow.is_some() {
+            // A literal would take the type of the other operand.
+            self.operand(right, depth);
+        } else {
+            self.any_value(right, depth);
+        }
+        let last = self.draft.position();
+        self.put(")");
+        let end = self.draft.position();
+        if left == result {
+            self.draft
+                .mark_all(vec![(start..first, ""), (middle..end, "")]);
+        }
+        if right == result {
+            self.draft
+                .mark_all(vec![(start..second, ""), (last..end, "")]);
+        }
+    }
+
+    fn condition(&mut self, depth: u32) {
+        match self.rng.below(12) {
+            0..=3 => self.comparison(depth),
+            4 => {
+                self.put("NOT ");
+                self.operand(Type::BOOL, depth);
+            }
+            5 if self.way(|route| route.ty == Type::BOOL && route.steps.len() > 1) => {}
+            6 => {
+                let ty = self.rng.pick(&[Elementary::Real, Elementary::Lreal]);
+                self.standard_call("IS_VALID", &[Type::Elementary(ty)], depth);
+            }
+            7 => {
+                let name = self.rng.pick(&["GT", "GE", "EQ", "LE", "LT"]);
+                let ty = self.compared_type();
+                let count = if matches!(ty, Type::Text { .. }) {
+                    2
+                } else {
+                    2 + self.rng.below(2)
+                };
+                self.standard_call(name, &vec![ty; count], depth);
+            }
+            8 if self.reference_test() => {}
+            9 if self.enumeration_test(depth) => {}
+            _ => {
+                let op = self.rng.pick(&["AND", "OR", "XOR", "&"]);
+                self.binary(op, [Type::BOOL; 3], depth);
+            }
+        }
+    }
+
+    fn compared_type(&mut self) -> Type {
+        if self.rng.one_in(8) {
+            return Types::text(self.rng);
+        }
+        Type::Elementary(Types::elementary(self.rng))
+    }
+
+    fn comparison(&mut self, depth: u32) {
+        let ty = self.compared_type();
+        let op = self.rng.pick(&COMPARISONS);
+        self.binary(op, [ty, ty, Type::BOOL], depth);
+    }
+
+    fn enumeration_test(&mut self, depth: u32) -> bool {
+        let count = self.types.enumerations.len();
+        if count == 0 {
+            return false;
+        }
+        let ty = Type::Enumeration(self.rng.below(count));
+        let op = self.rng.pick(&["=", "<>"]);
+        self.binary(op, [ty, ty, Type::BOOL], depth);
+        true
+    }
+
+    fn reference_test(&mut self) -> bool {
+        let is_reference = |route: &Route| matches!(route.ty, Type::Reference(_));
+        self.put("(");
+        if !self.way(is_reference) {
+            self.put("TRUE)");
+            return true;
+        }
+        let op = self.rng.pick(&["=", "<>"]);
+        self.put(&format!(" {op} NULL)"));
+        true
+    }
+
+    fn integer_operation(&mut self, ty: Elementary, depth: u32) {
+        let full = Type::Elementary(ty);
+        match self.rng.below(14) {
+            0 if ty.kind() == Kind::Signed => {
+                self.put("(-");
+                self.operand(full, 0);
+                self.put(")");
+            }
+            1 => self.standard_call("ABS", &[full], depth),
+            2 | 3 => self.division("/", ty, depth),
+            4 => self.division("MOD", ty, depth),
+            5 if ty == Elementary::Int => {
+                let text = Types::text(self.rng);
+                if self.rng.one_in(2) {
+                    self.standard_call("LEN", &[text], depth);
+                } else {
+                    self.standard_call("FIND", &[text, text], depth);
+                }
+            }
+            6 => {
+                let name = self.rng.pick(&["ADD", "SUB", "MUL"]);
+                self.standard_call(name, &[full, full], depth);
+            }
+            7 => {
+                let word = ty.word();
+                let from = self.rng.pick(&[Elementary::Real, Elementary::Lreal]);
+                let name = match self.rng.below(2) {
+                    0 => format!("TRUNC_{word}"),
+                    _ => format!("{}_TRUNC_{word}", from.word()),
+                };
+                self.standard_call(&name, &[Type::Elementary(from)], depth);
+            }
+            _ => {
+                let op = self.rng.pick(&["+", "-", "*"]);
+                self.binary(op, [full; 3], depth);
+            }
+        }
+    }
+
+    /// A quotient or remainder, whose divisor is 0 now and then.
+    fn division(&mut self, op: &str, ty: Elementary, depth: u32) {
+        let full = Type::Elementary(ty);
+        self.put("(");
+        self.operand(full, depth);
+        self.put(&format!(" {op} "));
+        match self.rng.below(8) {
+            0 | 1 => self.operand(full, depth),
+            2 => {
+                self.put("MAX(");
+                self.operand(full, depth);
+                self.put(&format!(", {}))", ty.plain()));
+                return;
+            }
+            _ => {
+                let literal = self.divisor_literal(ty);
+                self.put(&literal);
+            }
+        }
+        self.put(")");
+    }
+
+    fn bit_operation(&mut self, ty: Elementary, depth: u32) {
+        let full = Type::Elementary(ty);
+        match self.rng.below(8) {
+            0 => {
+                self.put("(NOT ");
+                self.operand(full, depth);
+                self.put(")");
+            }
+            1 | 2 => {
+                let name = self.rng.pick(&["SHL", "SHR", "ROL", "ROR"]);
+                let count = self.rng.pick(&[Elementary::Int, Elementary::Usint, Elementary::Dint]);
+                self.standard_call(name, &[full, Type::Elementary(count)], depth);
+            }
+            3 => {
+                let name = self.rng.pick(&["TO_BIG_ENDIAN", "FROM_BIG_ENDIAN"]);
+                self.standard_call(name, &[full], depth);
+            }
+            _ => {
+                let op = self.rng.pick(&["AND", "OR", "XOR", "&"]);
+                self.binary(op, [full; 3], depth);
+            }
+        }
+    }
+
+    fn real_operation(&mut self, ty: Elementary, depth: u32) {
+        let full = Type::Elementary(ty);
+        match self.rng.below(16) {
+            0 => {
+                self.put("(-");
+                self.operand(full, depth);
+                self.put(")");
+            }
+            1 => self.standard_call("ABS", &[full], depth),
+            2 => self.standard_call("SQRT", &[full], depth),
+            3 if self.rng.one_in(6) => {
+                let name = self
+                    .rng
+                    .pick(&["SIN", "COS", "EXP", "LN", "ATAN", "LOG", "TAN"]);
+                self.standard_call(name, &[full], depth);
+            }
+            4 if self.rng.one_in(6) => {
+                let power = self.rng.pick(&[Elementary::Int, Elementary::Sint, ty]);
+                self.binary("**", [full, Type::Elementary(power), full], depth);
+            }
+            5 => self.division("/", ty, depth),
+            _ => {
+                let op = self.rng.pick(&["+", "-", "*", "/"]);
+                self.binary(op, [full; 3], depth);
+            }
+        }
+    }
+
+    fn duration(&mut self, ty: Elementary, depth: u32) {
+        let full = Type::Elementary(ty);
+        let long = ty.is_long();
+        match self.rng.below(8) {
+            0 => {
+                self.put("(-");
+                self.operand(full, depth);
+                self.put(")");
+            }
+            1 | 2 => {
+                let number = self.rng.pick(&[
+                    Elementary::Int,
+                    Elementary::Dint,
+                    Elementary::Uint,
+                    Elementary::Real,
+                ]);
+                self.binary("*", [full, Type::Elementary(number), full], depth);
+            }
+            3 => self.division_of_time(full),
+            4 => {
+                let of = [Elementary::Date, Elementary::Tod, Elementary::Dt];
+                let of_long = [Elementary::Ldate, Elementary::Ltod, Elementary::Ldt];
+                let of = self.rng.pick(if long { &of_long } else { &of });
+                let of = Type::Elementary(of);
+                self.binary("-", [of, of, full], depth);
+            }
+            _ => {
+                let op = self.rng.pick(&["+", "-"]);
+                self.binary(op, [full; 3], depth);
+            }
+        }
+    }
+
+    fn division_of_time(&mut self, ty: Type) {
+        let number = self.rng.pick(&[Elementary::Int, Elementary::Lreal]);
+        self.put("(");
+        self.operand(ty, 0);
+        self.put(" / ");
+        if self.rng.one_in(3) {
+            self.operand(Type::Elementary(number), 0);
+        } else {
+            let literal = self.divisor_literal(number);
+            self.put(&literal);
+        }
+        self.put(")");
+    }
+
+    fn shifted_time(&mut self, ty: Elementary, depth: u32) {
+        let full = Type::Elementary(ty);
+        let by = if ty.is_long() { Elementary::Ltime } else { Elementary::Time };
+        if self.rng.one_in(4) {
+            return self.selection(full, depth);
+        }
+        let op = self.rng.pick(&["+", "-"]);
+        self.binary(op, [full, Type::Elementary(by), full], depth);
+    }
+
+    /// One of several values of a type.
+    fn selection(&mut self, ty: Type, depth: u32) {
+        let ordered = !matches!(ty, Type::Enumeration(_));
+        match self.rng.below(if ordered { 7 } else { 3 }) {
+            0 | 1 => self.standard_call("SEL", &[Type::BOOL, ty, ty], depth),
+            2 => {
+                let mut args = vec![Type::INT];
+                args.extend(vec![ty; 2 + self.rng.below(2)]);
+                self.standard_call("MUX", &args, depth);
+            }
+            3 => self.standard_call("LIMIT", &[ty, ty, ty], depth),
+            4 => self.standard_call("MOVE", &[ty], depth),
+            _ => {
+                let name = self.rng.pick(&["MAX", "MIN"]);
+                let count = 2 + self.rng.below(2);
+                self.standard_call(name, &vec![ty; count], depth);
+            }
+        }
+    }
+
+    /// A call of a standard function by position. The first argument of each type is not constant and
+    /// has the type by itself.
+    fn standard_call(&mut self, name: &str, args: &[Type], depth: u32) {
+        self.put(name);
+        self.put("(");
+        for (position, &ty) in args.iter().enumerate() {
+            self.put(if position > 0 { ", " } else { "" });
+            if args[..position].contains(&ty) {
+                self.any_value(ty, depth);
+            } else {
+                self.operand(ty, depth);
+            }
+        }
+        self.put(")");
+    }
+
+    /// A call of a function of the program with this result; says whether there is one.
+    fn call_of(&mut self, ty: Type) -> bool {
+        let found = self.callable_function(|function| function.result == Some(ty));
+        let Some(function) = found else { return false };
+        let name = function.name.clone();
+        let by_position = function.of(Way::Out).next().is_none() && self.rng.one_in(2);
+        self.put(&name);
+        self.arguments(&function, by_position);
+        true
+    }
+
+    /// A value of another type, converted.
+    fn converted(&mut self, to: Elementary, depth: u32) {
+        let from = self.source_of(to);
+        let (from_word, to_word) = (from.word(), to.word());
+        let name = if self.rng.one_in(2) {
+            format!("TO_{to_word}")
+        } else {
+            format!("{from_word}_TO_{to_word}")
+        };
+        self.put(&name);
+        self.put("(");
+        let from = Type::Elementary(from);
+        // Something is always there to begin with: every body has an INT.
+        if depth > 0 || self.routes.iter().any(|route| route.ty == from) {
+            self.operand(from, depth);
+        } else {
+            // A constant is converted at compile time, which refuses what does not fit.
+            let plain = self.types.plain(from);
+            self.put(&plain);
+        }
+        self.put(")");
+    }
+
+    /// A type that can be converted to another one, best one that there are variables of.
+    fn source_of(&mut self, to: Elementary) -> Elementary {
+        let from = Elementary::ALL.iter().copied();
+        let sources: Vec<Elementary> = from.filter(|from| converts(*from, to)).collect();
+        let known = |ty: &&Elementary| {
+            let ty = Type::Elementary(**ty);
+            self.routes.iter().any(|route| route.ty == ty)
+        };
+        let best: Vec<Elementary> = sources.iter().filter(known).copied().collect();
+        if best.is_empty() {
+            self.rng.pick(&sources)
+        } else {
+            self.rng.pick(&best)
+        }
+    }
+
+    fn text(&mut self, wide: bool, depth: u32) {
+        let text = Type::Text { wide, length: 10 };
+        let int = Type::INT;
+        match self.rng.below(10) {
+            0 => self.standard_call("LEFT", &[text, int], depth),
+            1 => self.standard_call("RIGHT", &[text, int], depth),
+            2 => self.standard_call("MID", &[text, int, int], depth),
+            3 => self.standard_call("INSERT", &[text, text, int], depth),
+            4 => self.standard_call("DELETE", &[text, int, int], depth),
+            5 => self.standard_call("REPLACE", &[text, text, int, int], depth),
+            6 => {
+                let to = if wide { "TO_WSTRING" } else { "TO_STRING" };
+                let ty = self.written_type();
+                self.standard_call(to, &[ty], depth);
+            }
+            7 => self.selection(text, depth),
+            _ => {
+                let count = 2 + self.rng.below(2);
+                self.standard_call("CONCAT", &vec![text; count], depth);
+            }
+        }
+    }
+
+    /// A type whose values become texts; those with long library code seldom.
+    fn written_type(&mut self) -> Type {
+        use Elementary::{Bool, Byte, Char, Dint, Int, Uint, Word};
+        if self.rng.one_in(5) {
+            return Type::Elementary(Types::elementary(self.rng));
+        }
+        Type::Elementary(self.rng.pick(&[Bool, Byte, Char, Dint, Int, Uint, Word]))
+    }
+
+    /// A reference to something that lives between scans, or NULL.
+    pub(super) fn reference(&mut self, ty: Type) {
+        let Type::Reference(at) = ty else {
+            unreachable!("only references are asked for");
+        };
+        let target = self.types.references[at];
+        if self.rng.below(4) == 0 && self.way(|route| route.ty == ty) {
+            return;
+        }
+        let fits = |route: &Route| route.ty == target && route.keeps && route.whole;
+        if self.rng.one_in(6) || !self.routes.iter().any(fits) {
+            return self.put("NULL");
+        }
+        self.put("REF(");
+        self.way(fits);
+        self.put(")");
+    }
+}
+
+/// Whether there is a function that converts.
+fn converts(from: Elementary, to: Elementary) -> bool {
+    use Kind::{Bits, Bool, Character, Clock, Date, Duration, Moment, Real, Signed, Unsigned};
+    if from == to {
+        return false;
+    }
+    let numeric = |kind| matches!(kind, Signed | Unsigned);
+    match (from.kind(), to.kind()) {
+        (Signed | Unsigned | Bits | Bool, Bool | Bits) => true,
+        (from_kind, Signed | Unsigned) => {
+            numeric(from_kind) || matches!(from_kind, Real | Bits | Bool | Duration)
+        }
+        (Signed | Unsigned | Real | Duration, Real) => true,
+        (Bits, Real) => from.bits() == to.bits(),
+        (Real, Bits) => from.bits() == to.bits(),
+        (Signed | Unsigned | Real, Duration) => true,
+        (Duration, Duration)
+        | (Clock, Clock)
+        | (Moment, Moment | Date | Clock)
+        | (Date, Date) => from.is_long() || !to.is_long() || from.kind() == to.kind(),
+        (Character, Character) => true,
+        (Bits, Character) => from.bits() == to.bits(),
+        (Character, Bits) => from.bits() <= to.bits(),
+        (
+            Bool | Signed | Unsigned | Bits | Real | Duration | Date | Clock | Moment | Character,
+            Bool | Bits | Real | Duration | Date | Clock | Moment | Character,
+        ) => false,
+    }
+}
