@@ -33,7 +33,7 @@ impl Generator<'_> {
         affordable
             && callee
                 .of(Way::InOut)
-                .all(|param| self.routes.iter().any(|route| fits_in_out(route, param.ty)))
+                .all(|param| self.routes.iter().any(|route| self.fits_in_out(route, param.ty)))
     }
 
     pub(super) fn spend(&mut self, statements: u64) {
@@ -89,9 +89,7 @@ impl Generator<'_> {
         match param.way {
             Way::In => self.given(param.ty),
             Way::Out => self.target(param.ty),
-            Way::InOut => {
-                self.way(|route| fits_in_out(route, param.ty));
-            }
+            Way::InOut => self.in_out(param.ty),
         }
         if removable {
             self.draft.mark(start, "");
@@ -221,9 +219,48 @@ impl Generator<'_> {
         let (index, at) = self.rng.pick(&found);
         Some((self.routes[index].clone(), at))
     }
-}
 
-/// Whether something can be passed as an in-out.
-fn fits_in_out(route: &Route, ty: Type) -> bool {
-    route.ty == ty && route.write && route.whole
+    /// Whether something can be passed as an in-out.
+    fn fits_in_out(&self, route: &Route, ty: Type) -> bool {
+        let below = match (route.ty, ty) {
+            (Type::Instance(given), Type::Instance(wanted)) => {
+                given == wanted || self.units[given].above.contains(&wanted)
+            }
+            (given, wanted) => given == wanted && route.write,
+        };
+        below && route.whole
+    }
+
+    fn in_out(&mut self, ty: Type) {
+        let routes = self.routes.iter().enumerate();
+        let fitting: Vec<usize> = routes
+            .filter(|(_, route)| self.fits_in_out(route, ty))
+            .map(|(at, _)| at)
+            .collect();
+        let route = self.routes[self.rng.pick(&fitting)].clone();
+        self.write_route(&route);
+    }
+
+    /// A call of a method with this result; says whether there is one.
+    pub(super) fn method_of(&mut self, ty: Type) -> bool {
+        let fits = |method: &Signature| method.result == Some(ty);
+        let found = self.instances(|unit, this| {
+            let mut methods = unit.methods.iter();
+            methods.any(|method| fits(method) && this.can_call(method))
+        });
+        let Some((route, at)) = found else {
+            return false;
+        };
+        let methods = self.units[at].methods.iter();
+        let methods: Vec<Signature> = methods
+            .filter(|method| fits(method) && self.can_call(method))
+            .cloned()
+            .collect();
+        let method = methods[self.rng.below(methods.len())].clone();
+        self.spend(method.cost);
+        self.write_route(&route);
+        self.put(&format!(".{}", method.name));
+        self.arguments(&method, false);
+        true
+    }
 }

@@ -68,6 +68,7 @@ pub fn random_program(seed: u64, options: Options) -> Draft {
         cost: 0,
         turns: 1,
         loops: 0,
+        nested: 0,
     };
     generator.write();
     generator.draft
@@ -94,6 +95,8 @@ struct Generator<'r> {
     turns: u64,
     /// Loops around the present statement.
     loops: u32,
+    /// Subscripts around the present expression.
+    nested: u32,
 }
 
 impl Generator<'_> {

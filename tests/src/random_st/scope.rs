@@ -61,7 +61,8 @@ pub(super) fn routes(variables: &[Variable], types: &Types, units: &[Unit]) -> V
             ty: variable.ty,
             write: variable.write,
             keeps: variable.keeps,
-            whole: true,
+            // A point behind an address would be a part of the address.
+            whole: !variable.name.starts_with('%'),
         })
         .collect();
     let mut next = 0;

@@ -64,7 +64,9 @@ impl Generator<'_> {
         let route = self.routes[self.rng.pick(&targets)].clone();
         self.write_route(&route);
         self.put(" := ");
-        self.way(|from| from.ty == route.ty);
+        if !self.rng.one_in(2) || !self.call_of(route.ty) {
+            self.way(|from| from.ty == route.ty);
+        }
         self.put(";\n");
         true
     }

@@ -8,6 +8,19 @@ use super::types::{Elementary, Type, Types};
 /// How deep statements nest.
 const DEPTH: u32 = 2;
 
+/// Addresses, some of which lie in others.
+const DIRECT: [(&str, Elementary, bool); 9] = [
+    ("%MD0", Elementary::Dword, true),
+    ("%MW1", Elementary::Word, true),
+    ("%MB2", Elementary::Byte, true),
+    ("%MX3.5", Elementary::Bool, true),
+    ("%ML0", Elementary::Lword, true),
+    ("%IW0", Elementary::Word, false),
+    ("%IX0.3", Elementary::Bool, false),
+    ("%QW0", Elementary::Word, true),
+    ("%QX0.7", Elementary::Bool, true),
+];
+
 /// What a body sees, beside what it declares itself.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Frame {
@@ -26,6 +39,7 @@ impl Frame {
     }
 
     fn add_params(&mut self, params: &[Param]) {
+        self.add("ENO", Type::BOOL, true, false);
         for param in params {
             self.add(&param.name, param.ty, param.way != Way::In, false);
         }
@@ -51,7 +65,11 @@ impl Generator<'_> {
 
     pub(super) fn function(&mut self, index: usize) {
         let start = self.draft.position();
-        let result = (!self.rng.one_in(5)).then(|| self.types.value(self.rng));
+        let result = match self.rng.below(8) {
+            0 => None,
+            1 => Some(self.types.any(self.rng)),
+            _ => Some(self.types.value(self.rng)),
+        };
         let mut signature = self.signature(&format!("f{index}"), result, true);
         let name = signature.name.clone();
         self.head("FUNCTION", &signature);
@@ -125,7 +143,11 @@ impl Generator<'_> {
                 continue;
             }
             for index in 0..self.rng.below(most) {
-                let ty = self.types.any(self.rng);
+                let ty = if way == Way::InOut && self.rng.one_in(3) {
+                    Type::Instance(self.rng.below(self.units.len()))
+                } else {
+                    self.types.any(self.rng)
+                };
                 let name = format!("{prefix}{index}");
                 params.push(Param { name, ty, way });
             }
@@ -151,12 +173,16 @@ impl Generator<'_> {
             self.references(frame);
         }
         self.put("END_VAR\n");
+        // Where faults do not stop, a block may run on an instance that is not there and keeps nothing;
+        // its loops must end even so.
+        self.put(if keeps { "VAR_TEMP\n" } else { "VAR\n" });
         self.counters(frame);
+        self.put("END_VAR\n");
     }
 
+    /// What loops count in.
     fn counters(&mut self, frame: &mut Frame) {
         use Elementary::{Dint, Int, Lint, Sint, Uint, Usint};
-        self.put("VAR\n");
         for index in 0..2 {
             let ty = self.rng.pick(&[Int, Int, Dint, Sint, Usint, Uint, Lint]);
             let name = format!("c{index}");
@@ -165,7 +191,6 @@ impl Generator<'_> {
             frame.counters.push((name, ty));
         }
         self.declaration("guard", Type::INT, false);
-        self.put("END_VAR\n");
     }
 
     /// References to what some variables are.
@@ -201,9 +226,15 @@ impl Generator<'_> {
         self.cost
     }
 
+    /// A block; it may extend the one before, whose parameters and methods it then has.
     pub(super) fn block_unit(&mut self, index: usize) {
         let start = self.draft.position();
+        let base = self.units.len() - 1;
+        let extends = base >= self.standard && self.rng.one_in(2);
         let mut signature = self.signature(&format!("Block{index}"), None, true);
+        if extends {
+            return self.derived_block(base, &signature.name);
+        }
         self.head("FUNCTION_BLOCK", &signature);
         let mut inner = Frame::default();
         self.instances_section(&mut inner, 2);
@@ -223,6 +254,61 @@ impl Generator<'_> {
             methods,
             is_interface: false,
             above: Vec::new(),
+        });
+    }
+
+    /// A block that has all its parameters of another one, and runs its body now and then.
+    fn derived_block(&mut self, base: usize, name: &str) {
+        let start = self.draft.position();
+        let base_name = self.types.instances[base].clone();
+        let unit = self.units[base].clone();
+        self.put(&format!("FUNCTION_BLOCK {name} EXTENDS {base_name}\n"));
+        let mut frame = Frame::default();
+        self.put("VAR_OUTPUT\n");
+        self.declaration("more", Type::INT, true);
+        self.put("END_VAR\n");
+        frame.add("more", Type::INT, true, false);
+        let body = unit.body.expect("blocks have one");
+        let outside: Vec<Param> = body.params.iter().filter(|p| p.way != Way::InOut).cloned().collect();
+        let mut seen = frame.clone();
+        seen.add_params(&outside);
+        frame.add_params(&body.params);
+        let mut methods = Vec::new();
+        for method in unit.methods {
+            methods.push(if self.rng.one_in(2) {
+                self.method("METHOD PUBLIC OVERRIDE", method, seen.clone())
+            } else {
+                method
+            });
+        }
+        self.put("VAR_TEMP\n");
+        self.declaration("t0", Type::INT, false);
+        self.put("END_VAR\n");
+        let super_call = self.draft.position();
+        self.put("SUPER();\n");
+        self.draft.mark(super_call, "");
+        let cost = self.body(frame, 2) + body.cost;
+        self.put("END_FUNCTION_BLOCK\n");
+        self.draft.mark(start, "");
+        self.types.instances.push(name.to_owned());
+        let mut params = body.params;
+        params.push(Param {
+            name: "more".to_owned(),
+            ty: Type::INT,
+            way: Way::Out,
+        });
+        let mut above = unit.above;
+        above.push(base);
+        self.units.push(Unit {
+            body: Some(Signature {
+                name: name.to_owned(),
+                result: None,
+                params,
+                cost,
+            }),
+            methods,
+            is_interface: false,
+            above,
         });
     }
 
@@ -380,6 +466,11 @@ impl Generator<'_> {
             self.declaration("t0", ty, true);
             self.put("END_VAR\n");
             frame.add("t0", ty, true, false);
+        }
+        if self.rng.one_in(3) {
+            for (name, ty, write) in DIRECT {
+                frame.add(name, Type::Elementary(ty), write, false);
+            }
         }
         let size = self.options.statements;
         self.body(frame, size);

@@ -123,7 +123,9 @@ impl Generator<'_> {
     fn subscript(&mut self, low: i64, high: i64) {
         let start = self.draft.position();
         let inside = low + self.rng.below((high - low + 1) as usize) as i64;
-        match self.rng.below(8) {
+        self.nested += 1;
+        let choice = if self.nested > 2 { 7 } else { self.rng.below(8) };
+        match choice {
             0 => {
                 let ty = self.rng.pick(&[Elementary::Int, Elementary::Dint, Elementary::Lint]);
                 let ty = Type::Elementary(ty);
@@ -143,6 +145,7 @@ impl Generator<'_> {
             }
             _ => self.put(&inside.to_string()),
         }
+        self.nested -= 1;
         self.draft.mark(start, &inside.to_string());
     }
 
@@ -160,7 +163,8 @@ impl Generator<'_> {
         match self.rng.below(10) {
             0 => return self.selection(Type::Elementary(ty), depth),
             1 => return self.converted(ty, depth),
-            2 | 3 if self.call_of(Type::Elementary(ty)) => return,
+            2 if self.call_of(Type::Elementary(ty)) => return,
+            3 if self.method_of(Type::Elementary(ty)) => return,
             _ => {}
         }
         match ty.kind() {
@@ -480,7 +484,7 @@ impl Generator<'_> {
     }
 
     /// A call of a function of the program with this result; says whether there is one.
-    fn call_of(&mut self, ty: Type) -> bool {
+    pub(super) fn call_of(&mut self, ty: Type) -> bool {
         let found = self.callable_function(|function| function.result == Some(ty));
         let Some(function) = found else { return false };
         let name = function.name.clone();

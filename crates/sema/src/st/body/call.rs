@@ -557,9 +557,6 @@ impl Body<'_, '_> {
     /// The place an in-out stands for.
     pub(super) fn in_out(&mut self, var: &Var, value: st::Id<st::Expr>) -> Option<PathId> {
         let operand = self.place(value, None);
-        if operand.is_error() {
-            return None;
-        }
         self.reference_argument(var, &operand)
     }
 

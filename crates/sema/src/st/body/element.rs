@@ -1,5 +1,6 @@
 //! Parts of a value: elements of arrays, characters of strings, bits of bit strings.
 
+use super::part::enter_bits;
 use super::{Body, Operand, OperandKind};
 use crate::hir::code::{BinaryOp, Conversion, ExprKind, PathStep};
 use crate::st::constant::Const;
@@ -181,10 +182,7 @@ impl Body<'_, '_> {
         match &base.kind {
             OperandKind::Place(place) => {
                 let (root, mut steps, rights) = (place.root, place.steps.clone(), place.rights);
-                steps.push(PathStep::Bits {
-                    first: first as u32,
-                    count,
-                });
+                enter_bits(&mut steps, first as u32, count);
                 self.place_operand(root, steps, rights, TypeId::of(ty), range)
             }
             OperandKind::Const(Const::Int(value)) => {

@@ -1,5 +1,6 @@
 //! Calls of functions and methods, of the user and of the library.
 
+use super::part::shared_bytes;
 use super::library::Given;
 use super::object::{Run, Target, function_target};
 use super::{Body, Operand, OperandKind, Place, Rights};
@@ -329,6 +330,7 @@ impl Body<'_, '_> {
         }
     }
 
+    /// The place that an in-out stands for.
     pub(super) fn reference_argument(&mut self, var: &Var, operand: &Operand) -> Option<PathId> {
         if operand.is_error() {
             return None;
@@ -336,17 +338,25 @@ impl Body<'_, '_> {
         if var.constant {
             return Some(self.constant_in_out(var, operand));
         }
-        let OperandKind::Place(_) = &operand.kind else {
+        let OperandKind::Place(given) = &operand.kind else {
             let message = format!("in-out `{}` takes a variable", self.text(var.name));
             self.error(Message::E3015, operand.range, message);
             return None;
         };
+        if let Some(what) = shared_bytes(given) {
+            let name = self.text(var.name);
+            let message = format!("in-out `{name}` takes a whole variable, not {what}");
+            self.error(Message::E3015, operand.range, message);
+            return None;
+        }
         let place = self.writable(operand)?;
         if let Some(place) = self.as_base(&place, operand.ty, var.ty) {
             return Some(self.path_of(&place, operand.range));
         }
         if self.an.types.strip(operand.ty) != self.an.types.strip(var.ty) {
-            self.mismatch(operand, var.ty);
+            if var.ty != TypeId::ERROR {
+                self.mismatch(operand, var.ty);
+            }
             return None;
         }
         Some(self.path_of(&place, operand.range))

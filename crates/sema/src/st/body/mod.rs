@@ -23,6 +23,7 @@ mod mock;
 mod object;
 mod operand;
 mod operator;
+mod part;
 mod place;
 mod pointer;
 mod program;

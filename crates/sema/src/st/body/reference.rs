@@ -1,5 +1,6 @@
 //! References to variables and instances: what has one, what one may become, `?=`, copies.
 
+use super::part::shared_bytes;
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{ExprId, ExprKind, PathStep, Root, StmtId, StmtKind};
 use crate::hir::{self, Elementary, Type};
@@ -12,22 +13,23 @@ use iecc_source::TextRange;
 
 impl Body<'_, '_> {
     /// Why nothing may refer to a place, if so.
-    pub(super) fn no_reference(&self, place: &Place) -> Option<&'static str> {
-        if matches!(place.steps.last(), Some(PathStep::Bits { .. })) {
-            return Some("part of a bit string has no reference");
+    pub(super) fn no_reference(&self, place: &Place) -> Option<String> {
+        if let Some(what) = shared_bytes(place) {
+            return Some(format!("{what} has no reference"));
         }
         if place.rights == Rights::Value {
             return Some("the value of a property is a copy, which nothing can refer to");
         }
         if place.rights == Rights::Constant {
-            return Some("a constant has no reference");
+            return Some("a constant has no reference".to_owned());
         }
         let temporary = match place.root {
             Root::Local(_) => true,
             Root::Ref(reference) => self.is_passed_copy(reference),
             Root::Tag(_) | Root::Deref { .. } => false,
         };
-        temporary.then_some("this variable is gone when the call ends, so nothing can refer to it")
+        let gone = "this variable is gone when the call ends, so nothing can refer to it";
+        temporary.then(|| gone.to_owned())
     }
 
     /// Whether a reference parameter stands for a copy: an input, an output, the result.
