@@ -14,9 +14,10 @@ impl Generator<'_> {
         &mut self,
         fits: impl Fn(&Signature) -> bool,
     ) -> Option<Signature> {
-        let functions = self.functions.iter();
+        // The program's own functions more often than the many of the library.
+        let first = if self.rng.one_in(3) { 0 } else { self.library_functions };
+        let functions = self.functions.iter().enumerate().skip(first);
         let fitting: Vec<usize> = functions
-            .enumerate()
             .filter(|(_, function)| fits(function) && self.can_call(function))
             .map(|(at, _)| at)
             .collect();
@@ -29,7 +30,9 @@ impl Generator<'_> {
     }
 
     fn can_call(&self, callee: &Signature) -> bool {
-        let affordable = self.cost + (callee.cost + 1) * self.turns <= MAX_COST;
+        // Else calls as arguments of calls could go on for ever.
+        let affordable = self.nested < 2
+            && self.cost + (callee.cost + 1) * self.turns <= MAX_COST;
         affordable
             && callee
                 .of(Way::InOut)
@@ -42,6 +45,12 @@ impl Generator<'_> {
 
     /// Arguments in parentheses: all by position, or some by name.
     pub(super) fn arguments(&mut self, callee: &Signature, by_position: bool) {
+        self.nested += 1;
+        self.write_arguments(callee, by_position);
+        self.nested -= 1;
+    }
+
+    fn write_arguments(&mut self, callee: &Signature, by_position: bool) {
         let mut inputs = callee.of(Way::In);
         let by_position = by_position && inputs.all(|param| self.can_give(param.ty));
         self.put("(");
@@ -51,10 +60,12 @@ impl Generator<'_> {
             self.operand(Type::BOOL, 1);
             comma = true;
         }
+        // Overloaded functions of the library are found by all their arguments.
+        let complete = self.is_library(callee);
         for param in &callee.params {
-            let needed = by_position || param.way == Way::InOut;
+            let needed = by_position || param.way == Way::InOut || complete;
             if needed || !self.rng.one_in(3) {
-                self.argument(param, by_position, &mut comma);
+                self.argument(param, by_position, complete, &mut comma);
             }
         }
         if !by_position && self.rng.one_in(10) && self.has(Type::BOOL) {
@@ -64,7 +75,12 @@ impl Generator<'_> {
         self.put(")");
     }
 
-    fn argument(&mut self, param: &Param, by_position: bool, comma: &mut bool) {
+    fn is_library(&self, callee: &Signature) -> bool {
+        let mut library = self.functions[..self.library_functions].iter();
+        library.any(|known| known.name == callee.name)
+    }
+
+    fn argument(&mut self, param: &Param, by_position: bool, exact: bool, comma: &mut bool) {
         let name = if by_position {
             String::new()
         } else {
@@ -87,6 +103,7 @@ impl Generator<'_> {
         *comma = true;
         self.put(&name);
         match param.way {
+            Way::In if exact => self.operand(param.ty, 1),
             Way::In => self.given(param.ty),
             Way::Out => self.target(param.ty),
             Way::InOut => self.in_out(param.ty),
@@ -108,7 +125,7 @@ impl Generator<'_> {
             Type::Elementary(_) | Type::Text { .. } | Type::Enumeration(_) => self.value(ty),
             Type::Subrange(_) => self.limited(ty),
             Type::Reference(_) => self.operand(ty, 0),
-            Type::Array(_) | Type::Structure(_) | Type::Instance(_) => {
+            Type::Array(_) | Type::Open(_) | Type::Structure(_) | Type::Instance(_) => {
                 self.way(|route| route.ty == ty);
             }
         }
@@ -146,6 +163,7 @@ impl Generator<'_> {
         match self.rng.below(4) {
             0 => self.function_statement(),
             1 => self.method_statement(),
+            2 if self.rng.one_in(3) => self.input_statement(),
             _ => self.instance_statement(),
         }
     }
@@ -171,6 +189,27 @@ impl Generator<'_> {
         self.spend(body.cost);
         self.write_route(&route);
         self.arguments(&body, false);
+        self.put(";\n");
+        true
+    }
+
+    /// An input of an instance is assigned, without a call.
+    fn input_statement(&mut self) -> bool {
+        let is_input = |param: &&Param| param.way == Way::In && param.ty.is_value();
+        let found = self.instances(|unit, _| {
+            let mut params = unit.body.iter().flat_map(|body| &body.params);
+            params.any(|param| is_input(&param) && param.edge.is_empty())
+        });
+        let Some((route, at)) = found else {
+            return false;
+        };
+        let body = self.units[at].body.clone().expect("it has inputs");
+        let inputs = body.params.iter().filter(is_input);
+        let inputs: Vec<&Param> = inputs.filter(|param| param.edge.is_empty()).collect();
+        let input = inputs[self.rng.below(inputs.len())];
+        self.write_route(&route);
+        self.put(&format!(".{} := ", input.name));
+        self.given(input.ty);
         self.put(";\n");
         true
     }
@@ -223,6 +262,11 @@ impl Generator<'_> {
     /// Whether something can be passed as an in-out.
     fn fits_in_out(&self, route: &Route, ty: Type) -> bool {
         let below = match (route.ty, ty) {
+            (Type::Array(at), Type::Open(element)) => {
+                let array = &self.types.arrays[at];
+                let fits = array.bounds.len() == 1 && array.element == Type::Elementary(element);
+                fits && route.write
+            }
             (Type::Instance(given), Type::Instance(wanted)) => {
                 given == wanted || self.units[given].above.contains(&wanted)
             }

@@ -43,7 +43,7 @@ impl Generator<'_> {
                 format!("{}#{number}", base.word())
             }
             Type::Reference(_) => "NULL".to_owned(),
-            Type::Array(_) | Type::Structure(_) | Type::Instance(_) => {
+            Type::Array(_) | Type::Open(_) | Type::Structure(_) | Type::Instance(_) => {
                 unreachable!("there are no such literals")
             }
         }
@@ -149,7 +149,7 @@ impl Generator<'_> {
     /// The initial value of a variable, or nothing where its type needs none.
     pub(super) fn initial_value(&mut self, ty: Type) -> Option<String> {
         match ty {
-            Type::Reference(_) | Type::Instance(_) => None,
+            Type::Reference(_) | Type::Instance(_) | Type::Open(_) => None,
             Type::Array(at) => {
                 let array = &self.types.arrays[at];
                 let element = array.element;

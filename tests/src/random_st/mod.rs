@@ -12,6 +12,7 @@
 mod calls;
 mod draft;
 mod literals;
+mod program;
 mod run;
 mod scope;
 mod signatures;
@@ -25,8 +26,8 @@ pub use run::{Outcome, check, check_seed, policy};
 
 use crate::rng::Rng;
 use scope::Route;
-use signatures::{Signature, Unit, standard_blocks};
-use types::{Elementary, Types};
+use signatures::{Signature, Unit, standard_blocks, standard_functions};
+use types::{Elementary, Type, Types};
 
 /// What a program may contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,7 +62,9 @@ pub fn random_program(seed: u64, options: Options) -> Draft {
         draft: Draft::default(),
         types,
         units,
-        functions: Vec::new(),
+        functions: standard_functions(),
+        library_functions: standard_functions().len(),
+        constants: Vec::new(),
         routes: Vec::new(),
         counters: Vec::new(),
         left: 0,
@@ -83,7 +86,11 @@ struct Generator<'r> {
     /// Blocks, classes and interfaces, the first ones of the library.
     units: Vec<Unit>,
     standard: usize,
+    /// Functions, the first ones of the library.
     functions: Vec<Signature>,
+    library_functions: usize,
+    /// Named constants of the present unit.
+    constants: Vec<(String, Type)>,
     // The rest is about the present body.
     routes: Vec<Route>,
     /// Variables that no loop around counts in.
@@ -95,7 +102,7 @@ struct Generator<'r> {
     turns: u64,
     /// Loops around the present statement.
     loops: u32,
-    /// Subscripts around the present expression.
+    /// Subscripts and calls around the present expression.
     nested: u32,
 }
 
@@ -111,6 +118,6 @@ impl Generator<'_> {
         if self.rng.one_in(3) {
             self.relatives();
         }
-        self.program();
+        self.programs();
     }
 }

@@ -25,6 +25,8 @@ pub(super) enum Step {
     Word(String),
     /// A subscript for each dimension.
     Index(Vec<(i64, i64)>),
+    /// A subscript within the bounds of the `ARRAY [*]` of this name.
+    Open(String),
     /// A character of a string that has so many at most.
     Character(u32),
 }
@@ -93,6 +95,12 @@ fn onward(route: &Route, types: &Types, units: &[Unit]) -> Vec<Route> {
             let array = &types.arrays[at];
             let step = Step::Index(array.bounds.clone());
             vec![route.then(step, array.element)]
+        }
+        Type::Open(element) => {
+            let Step::Word(name) = &route.steps[0] else {
+                unreachable!("ways begin with a name");
+            };
+            vec![route.then(Step::Open(name.clone()), Type::Elementary(element))]
         }
         Type::Structure(at) => {
             let members = types.structures[at].members.iter();

@@ -15,6 +15,19 @@ pub(super) struct Param {
     pub(super) name: String,
     pub(super) ty: Type,
     pub(super) way: Way,
+    /// `R_EDGE` or `F_EDGE` behind its type, or nothing.
+    pub(super) edge: &'static str,
+}
+
+impl Param {
+    pub(super) fn new(name: &str, ty: Type, way: Way) -> Self {
+        Self {
+            name: name.to_owned(),
+            ty,
+            way,
+            edge: "",
+        }
+    }
 }
 
 /// Something that can be called.
@@ -91,14 +104,67 @@ pub(super) fn standard_blocks(types: &mut Types) -> Vec<Unit> {
     units.collect()
 }
 
-fn params(text: &str, way: Way) -> impl Iterator<Item = Param> + use<'_> {
-    text.split(' ').map(move |param| {
-        let (name, ty) = param.split_once(':').expect("NAME:TYPE");
-        let known = Elementary::ALL.iter().find(|known| known.word() == ty);
-        Param {
-            name: name.to_owned(),
-            ty: Type::Elementary(*known.expect("an elementary type")),
-            way,
+/// Functions of the library whose parameters have one type each.
+pub(super) fn standard_functions() -> Vec<Signature> {
+    let table: [(&str, &str, &str, &str); 25] = [
+        ("CONCAT_DATE", "DATE", "YEAR:INT MONTH:INT DAY:INT", ""),
+        (
+            "CONCAT_TOD",
+            "TOD",
+            "HOUR:INT MINUTE:INT SECOND:INT MILLISECOND:INT",
+            "",
+        ),
+        ("CONCAT_DATE_TOD", "DT", "IN1:DATE IN2:TOD", ""),
+        ("SPLIT_DATE", "", "IN:DATE", "YEAR:INT MONTH:INT DAY:INT"),
+        (
+            "SPLIT_TOD",
+            "",
+            "IN:TOD",
+            "HOUR:INT MINUTE:INT SECOND:INT MILLISECOND:INT",
+        ),
+        ("DAY_OF_WEEK", "INT", "IN:DATE", ""),
+        ("ADD_TIME", "TIME", "IN1:TIME IN2:TIME", ""),
+        ("SUB_DT_DT", "TIME", "IN1:DT IN2:DT", ""),
+        ("ADD_TOD_TIME", "TOD", "IN1:TOD IN2:TIME", ""),
+        ("BCD_TO_UINT", "UINT", "IN:WORD", ""),
+        ("TO_BCD_WORD", "WORD", "IN:UINT", ""),
+        ("IS_VALID_BCD", "BOOL", "IN:DWORD", ""),
+        ("ADD", "INT", "IN1:INT IN2:INT", ""),
+        ("SUB", "DINT", "IN1:DINT IN2:DINT", ""),
+        ("MUL", "INT", "IN1:INT IN2:INT", ""),
+        ("DIV", "INT", "IN1:INT IN2:INT", ""),
+        ("DIV", "REAL", "IN1:REAL IN2:REAL", ""),
+        ("ABS", "INT", "IN:INT", ""),
+        ("SQRT", "LREAL", "IN:LREAL", ""),
+        ("SEL", "REAL", "G:BOOL IN0:REAL IN1:REAL", ""),
+        ("LIMIT", "INT", "MN:INT IN:INT MX:INT", ""),
+        ("MUX", "DINT", "K:INT IN0:DINT IN1:DINT", ""),
+        ("SHL", "WORD", "IN:WORD N:INT", ""),
+        ("ROR", "BYTE", "IN:BYTE N:INT", ""),
+        ("GT", "BOOL", "IN1:INT IN2:INT", ""),
+    ];
+    let functions = table.iter().map(|(name, result, inputs, outputs)| {
+        let result = (!result.is_empty()).then(|| Type::Elementary(elementary(result)));
+        let inputs = params(inputs, Way::In);
+        Signature {
+            name: (*name).to_owned(),
+            result,
+            params: inputs.chain(params(outputs, Way::Out)).collect(),
+            cost: 5,
         }
+    });
+    functions.collect()
+}
+
+fn elementary(word: &str) -> Elementary {
+    let known = Elementary::ALL.iter().find(|known| known.word() == word);
+    *known.expect("an elementary type")
+}
+
+fn params(text: &str, way: Way) -> impl Iterator<Item = Param> + use<'_> {
+    let words = text.split(' ').filter(|word| !word.is_empty());
+    words.map(move |param| {
+        let (name, ty) = param.split_once(':').expect("NAME:TYPE");
+        Param::new(name, Type::Elementary(elementary(ty)), way)
     })
 }

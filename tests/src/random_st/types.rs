@@ -148,6 +148,8 @@ pub(super) enum Type {
     Enumeration(usize),
     Subrange(usize),
     Array(usize),
+    /// `ARRAY [*]` of an elementary type, for in-outs.
+    Open(Elementary),
     Structure(usize),
     Reference(usize),
     /// An instance of a block or class, or what an interface stands for.
@@ -164,7 +166,11 @@ impl Type {
             Self::Elementary(_) | Self::Text { .. } | Self::Enumeration(_) | Self::Subrange(_) => {
                 true
             }
-            Self::Array(_) | Self::Structure(_) | Self::Reference(_) | Self::Instance(_) => false,
+            Self::Array(_)
+            | Self::Open(_)
+            | Self::Structure(_)
+            | Self::Reference(_)
+            | Self::Instance(_) => false,
         }
     }
 }
@@ -220,6 +226,7 @@ impl Types {
             Type::Enumeration(at) => self.enumerations[at].name.clone(),
             Type::Subrange(at) => self.subranges[at].name.clone(),
             Type::Array(at) => self.arrays[at].written.clone(),
+            Type::Open(element) => format!("ARRAY [*] OF {}", element.word()),
             Type::Structure(at) => self.structures[at].name.clone(),
             Type::Reference(at) => format!("REF_TO {}", self.written(self.references[at])),
             Type::Instance(at) => self.instances[at].clone(),
@@ -238,7 +245,9 @@ impl Types {
                 format!("{}#{}", range.base.word(), range.low)
             }
             Type::Reference(_) => "NULL".to_owned(),
-            Type::Array(_) | Type::Structure(_) | Type::Instance(_) => String::new(),
+            Type::Array(_) | Type::Open(_) | Type::Structure(_) | Type::Instance(_) => {
+                String::new()
+            }
         }
     }
 

@@ -8,19 +8,6 @@ use super::types::{Elementary, Type, Types};
 /// How deep statements nest.
 const DEPTH: u32 = 2;
 
-/// Addresses, some of which lie in others.
-const DIRECT: [(&str, Elementary, bool); 9] = [
-    ("%MD0", Elementary::Dword, true),
-    ("%MW1", Elementary::Word, true),
-    ("%MB2", Elementary::Byte, true),
-    ("%MX3.5", Elementary::Bool, true),
-    ("%ML0", Elementary::Lword, true),
-    ("%IW0", Elementary::Word, false),
-    ("%IX0.3", Elementary::Bool, false),
-    ("%QW0", Elementary::Word, true),
-    ("%QX0.7", Elementary::Bool, true),
-];
-
 /// What a body sees, beside what it declares itself.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Frame {
@@ -29,7 +16,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    fn add(&mut self, name: &str, ty: Type, write: bool, keeps: bool) {
+    pub(super) fn add(&mut self, name: &str, ty: Type, write: bool, keeps: bool) {
         self.variables.push(Variable {
             name: name.to_owned(),
             ty,
@@ -44,6 +31,13 @@ impl Frame {
             self.add(&param.name, param.ty, param.way != Way::In, false);
         }
     }
+}
+
+/// Parameters that are more than a part of one call of the body.
+fn seen_by_methods(params: &[Param]) -> Vec<Param> {
+    let seen = params.iter();
+    let seen = seen.filter(|param| param.way != Way::InOut && param.edge.is_empty());
+    seen.cloned().collect()
 }
 
 impl Generator<'_> {
@@ -109,13 +103,17 @@ impl Generator<'_> {
             }
             self.put(&format!("{word}\n"));
             for param in chosen {
-                self.declaration(&param.name, param.ty, way != Way::InOut);
+                if param.edge.is_empty() {
+                    self.declaration(&param.name, param.ty, way != Way::InOut);
+                } else {
+                    self.put(&format!("  {} : BOOL {};\n", param.name, param.edge));
+                }
             }
             self.put("END_VAR\n");
         }
     }
 
-    fn declaration(&mut self, name: &str, ty: Type, may_begin: bool) {
+    pub(super) fn declaration(&mut self, name: &str, ty: Type, may_begin: bool) {
         let start = self.draft.position();
         let written = self.types.written(ty);
         self.put(&format!("  {name} : {written}"));
@@ -132,24 +130,19 @@ impl Generator<'_> {
 
     /// Random parameters; the first is an INT, so that every body has one.
     fn signature(&mut self, name: &str, result: Option<Type>, in_outs: bool) -> Signature {
-        let mut params = vec![Param {
-            name: "a".to_owned(),
-            ty: Type::INT,
-            way: Way::In,
-        }];
+        let mut params = vec![Param::new("a", Type::INT, Way::In)];
         let kinds = [("b", Way::In, 3), ("o", Way::Out, 2), ("io", Way::InOut, 2)];
         for (prefix, way, most) in kinds {
             if way == Way::InOut && !in_outs {
                 continue;
             }
             for index in 0..self.rng.below(most) {
-                let ty = if way == Way::InOut && self.rng.one_in(3) {
-                    Type::Instance(self.rng.below(self.units.len()))
-                } else {
-                    self.types.any(self.rng)
+                let ty = match self.rng.below(6) {
+                    0 | 1 if way == Way::InOut => Type::Instance(self.rng.below(self.units.len())),
+                    2 if way == Way::InOut => Type::Open(Types::elementary(self.rng)),
+                    _ => self.types.any(self.rng),
                 };
-                let name = format!("{prefix}{index}");
-                params.push(Param { name, ty, way });
+                params.push(Param::new(&format!("{prefix}{index}"), ty, way));
             }
         }
         Signature {
@@ -161,7 +154,7 @@ impl Generator<'_> {
     }
 
     /// Variables of a body, what its loops count in included.
-    fn locals(&mut self, frame: &mut Frame, word: &str, keeps: bool) {
+    pub(super) fn locals(&mut self, frame: &mut Frame, word: &str, keeps: bool) {
         self.put(&format!("{word}\n"));
         for index in 0..1 + self.rng.below(if keeps { 6 } else { 3 }) {
             let ty = self.types.any(self.rng);
@@ -206,7 +199,7 @@ impl Generator<'_> {
     }
 
     /// Statements; says how many it executes at most.
-    fn body(&mut self, frame: Frame, size: usize) -> u64 {
+    pub(super) fn body(&mut self, frame: Frame, size: usize) -> u64 {
         let units = std::mem::take(&mut self.units);
         self.routes = routes(&frame.variables, &self.types, &units);
         self.units = units;
@@ -235,6 +228,11 @@ impl Generator<'_> {
         if extends {
             return self.derived_block(base, &signature.name);
         }
+        if self.rng.one_in(3) {
+            let mut edge = Param::new("edge", Type::BOOL, Way::In);
+            edge.edge = self.rng.pick(&["R_EDGE", "F_EDGE"]);
+            signature.params.push(edge);
+        }
         self.head("FUNCTION_BLOCK", &signature);
         let mut inner = Frame::default();
         self.instances_section(&mut inner, 2);
@@ -242,8 +240,7 @@ impl Generator<'_> {
         let mut frame = inner.clone();
         frame.add_params(&signature.params);
         let mut seen = inner;
-        let outside = signature.params.iter().filter(|p| p.way != Way::InOut);
-        seen.add_params(&outside.cloned().collect::<Vec<_>>());
+        seen.add_params(&seen_by_methods(&signature.params));
         let methods = self.methods(seen);
         signature.cost = self.body(frame, 4);
         self.put("END_FUNCTION_BLOCK\n");
@@ -269,10 +266,11 @@ impl Generator<'_> {
         self.put("END_VAR\n");
         frame.add("more", Type::INT, true, false);
         let body = unit.body.expect("blocks have one");
-        let outside: Vec<Param> = body.params.iter().filter(|p| p.way != Way::InOut).cloned().collect();
         let mut seen = frame.clone();
-        seen.add_params(&outside);
-        frame.add_params(&body.params);
+        seen.add_params(&seen_by_methods(&body.params));
+        // What is behind an edge is seen by the body that declares it only.
+        let params = body.params.iter().filter(|param| param.edge.is_empty());
+        frame.add_params(&params.cloned().collect::<Vec<_>>());
         let mut methods = Vec::new();
         for method in unit.methods {
             methods.push(if self.rng.one_in(2) {
@@ -292,11 +290,7 @@ impl Generator<'_> {
         self.draft.mark(start, "");
         self.types.instances.push(name.to_owned());
         let mut params = body.params;
-        params.push(Param {
-            name: "more".to_owned(),
-            ty: Type::INT,
-            way: Way::Out,
-        });
+        params.push(Param::new("more", Type::INT, Way::Out));
         let mut above = unit.above;
         above.push(base);
         self.units.push(Unit {
@@ -343,7 +337,7 @@ impl Generator<'_> {
     }
 
     /// Instances of blocks that exist already.
-    fn instances_section(&mut self, frame: &mut Frame, most: usize) {
+    pub(super) fn instances_section(&mut self, frame: &mut Frame, most: usize) {
         self.put("VAR\n");
         for index in 0..self.rng.below(most + 1) {
             // The program's own blocks more often than the many of the library.
@@ -436,44 +430,5 @@ impl Generator<'_> {
             above,
         });
         self.units.len() - 1
-    }
-
-    pub(super) fn program(&mut self) {
-        self.put("PROGRAM Main\n");
-        let mut frame = Frame::default();
-        self.put("VAR_INPUT\n  a : INT;\n  b : BOOL;\n");
-        frame.add("a", Type::INT, false, false);
-        frame.add("b", Type::BOOL, false, false);
-        for index in 0..self.rng.below(4) {
-            let ty = Type::Elementary(Types::elementary(self.rng));
-            let name = format!("in{index}");
-            self.declaration(&name, ty, true);
-            frame.add(&name, ty, false, false);
-        }
-        self.put("END_VAR\nVAR_OUTPUT\n");
-        for index in 0..1 + self.rng.below(3) {
-            let ty = self.types.value(self.rng);
-            let name = format!("out{index}");
-            self.declaration(&name, ty, true);
-            frame.add(&name, ty, true, false);
-        }
-        self.put("END_VAR\n");
-        self.instances_section(&mut frame, 3);
-        self.locals(&mut frame, "VAR", true);
-        if self.rng.one_in(3) {
-            self.put("VAR_TEMP\n");
-            let ty = self.types.any(self.rng);
-            self.declaration("t0", ty, true);
-            self.put("END_VAR\n");
-            frame.add("t0", ty, true, false);
-        }
-        if self.rng.one_in(3) {
-            for (name, ty, write) in DIRECT {
-                frame.add(name, Type::Elementary(ty), write, false);
-            }
-        }
-        let size = self.options.statements;
-        self.body(frame, size);
-        self.put("END_PROGRAM\n");
     }
 }

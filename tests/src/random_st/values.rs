@@ -52,7 +52,12 @@ impl Generator<'_> {
             return self.operand(ty, depth);
         }
         let bare = self.rng.one_in(2);
+        let constants = self.constants.iter().filter(|(_, of)| *of == ty);
+        let constants: Vec<String> = constants.map(|(name, _)| name.clone()).collect();
         let literal = match ty {
+            _ if !constants.is_empty() && self.rng.one_in(2) => {
+                constants[self.rng.below(constants.len())].clone()
+            }
             Type::Elementary(ty) if bare => self.bare_literal(ty),
             _ => self.literal(ty),
         };
@@ -79,7 +84,7 @@ impl Generator<'_> {
                     this.put(&literal);
                 }
                 Type::Reference(_) => this.reference(ty),
-                Type::Array(_) | Type::Structure(_) | Type::Instance(_) => {
+                Type::Array(_) | Type::Open(_) | Type::Structure(_) | Type::Instance(_) => {
                     unreachable!("these have no expressions")
                 }
             }
@@ -110,6 +115,11 @@ impl Generator<'_> {
                     }
                     self.put("]");
                 }
+                Step::Open(name) => {
+                    self.put("[");
+                    self.open_subscript(name);
+                    self.put("]");
+                }
                 Step::Character(length) => {
                     self.put("[");
                     self.subscript(1, i64::from(*length));
@@ -117,6 +127,21 @@ impl Generator<'_> {
                 }
             }
         }
+    }
+
+    /// A subscript within bounds that the call gives.
+    fn open_subscript(&mut self, name: &str) {
+        let plain = format!("LOWER_BOUND({name}, 1)");
+        let start = self.draft.position();
+        if self.nested > 1 {
+            return self.put(&plain);
+        }
+        self.put(&format!("LIMIT({plain}, "));
+        self.nested += 1;
+        self.operand(Type::Elementary(Elementary::Dint), 1);
+        self.nested -= 1;
+        self.put(&format!(", UPPER_BOUND({name}, 1))"));
+        self.draft.mark(start, &plain);
     }
 
     /// A subscript, seldom one outside of the bounds.
