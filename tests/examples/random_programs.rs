@@ -83,5 +83,9 @@ fn survey(from: u64, to: u64) -> ExitCode {
     for (count, seed, what) in kinds.values() {
         println!("{count} times, seed {seed}: {what}");
     }
-    if kinds.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if kinds.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }

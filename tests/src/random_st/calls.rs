@@ -15,7 +15,11 @@ impl Generator<'_> {
         fits: impl Fn(&Signature) -> bool,
     ) -> Option<Signature> {
         // The program's own functions more often than the many of the library.
-        let first = if self.rng.one_in(3) { 0 } else { self.library_functions };
+        let first = if self.rng.one_in(3) {
+            0
+        } else {
+            self.library_functions
+        };
         let functions = self.functions.iter().enumerate().skip(first);
         let fitting: Vec<usize> = functions
             .filter(|(_, function)| fits(function) && self.can_call(function))
@@ -31,12 +35,13 @@ impl Generator<'_> {
 
     fn can_call(&self, callee: &Signature) -> bool {
         // Else calls as arguments of calls could go on for ever.
-        let affordable = self.nested < 2
-            && self.cost + (callee.cost + 1) * self.turns <= MAX_COST;
+        let affordable = self.nested < 2 && self.cost + (callee.cost + 1) * self.turns <= MAX_COST;
         affordable
-            && callee
-                .of(Way::InOut)
-                .all(|param| self.routes.iter().any(|route| self.fits_in_out(route, param.ty)))
+            && callee.of(Way::InOut).all(|param| {
+                self.routes
+                    .iter()
+                    .any(|route| self.fits_in_out(route, param.ty))
+            })
     }
 
     pub(super) fn spend(&mut self, statements: u64) {
@@ -247,9 +252,9 @@ impl Generator<'_> {
         let routes = self.routes.iter();
         let found: Vec<(usize, usize)> = routes
             .enumerate()
-            .filter_map(|(index, route)| match route.ty {
-                Type::Instance(at) if fits(&self.units[at], self) => Some((index, at)),
-                _ => None,
+            .filter_map(|(index, route)| {
+                let at = route.ty.as_instance()?;
+                fits(&self.units[at], self).then_some((index, at))
             })
             .collect();
         if found.is_empty() {

@@ -127,7 +127,13 @@ mod tests {
         draft.mark_all(cuts);
         draft.mark(head, "");
         assert_eq!(draft.shrink(|text| text.contains("d :=")), "d := 5;\n");
-        assert_eq!(draft.shrink(|text| text.contains("a :=")), "a := (1 + 0);\n");
-        assert_eq!(draft.shrink(|text| text.contains("77")), "a := (1 + b * 77);\n");
+        assert_eq!(
+            draft.shrink(|text| text.contains("a :=")),
+            "a := (1 + 0);\n"
+        );
+        assert_eq!(
+            draft.shrink(|text| text.contains("77")),
+            "a := (1 + b * 77);\n"
+        );
     }
 }

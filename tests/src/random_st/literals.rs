@@ -95,7 +95,11 @@ impl Generator<'_> {
     /// A number that is not 0.
     pub(super) fn divisor_literal(&mut self, ty: Elementary) -> String {
         if ty.is_real() {
-            return format!("{}#{}", ty.word(), self.rng.pick(&["2.0", "-0.5", "3.0", "1.0E30"]));
+            return format!(
+                "{}#{}",
+                ty.word(),
+                self.rng.pick(&["2.0", "-0.5", "3.0", "1.0E30"])
+            );
         }
         let signed = ty.kind() == Kind::Signed;
         let number = if signed && self.rng.one_in(3) {
@@ -108,9 +112,10 @@ impl Generator<'_> {
 
     fn integer(&mut self, ty: Elementary) -> i128 {
         let bits = ty.bits();
-        let (low, high) = match ty.kind() {
-            Kind::Unsigned => (0, (1_i128 << bits) - 1),
-            _ => (-(1_i128 << (bits - 1)), (1_i128 << (bits - 1)) - 1),
+        let (low, high) = if ty.kind() == Kind::Unsigned {
+            (0, (1_i128 << bits) - 1)
+        } else {
+            (-(1_i128 << (bits - 1)), (1_i128 << (bits - 1)) - 1)
         };
         let number = match self.rng.below(6) {
             0 => low,

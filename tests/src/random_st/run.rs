@@ -85,7 +85,8 @@ fn module(text: &str, policy: OnFault) -> Result<Module, String> {
     };
     compile(&map, &sources, &options, &mut found).ok_or_else(|| {
         let errors = found.iter().filter(|said| said.severity == Severity::Error);
-        let first = errors.map(|said| format!("{:?} {}", said.code, render_text(&map, said, false)));
+        let first =
+            errors.map(|said| format!("{:?} {}", said.code, render_text(&map, said, false)));
         first.take(1).collect()
     })
 }
@@ -94,8 +95,13 @@ fn module(text: &str, policy: OnFault) -> Result<Module, String> {
 /// machine code.
 fn compare(module: &Module, seed: u64) -> Result<Outcome, String> {
     let mut optimised = module.clone();
-    run_pipeline(&mut optimised, SOFTWARE, &Settings::default(), &mut |_, _| {})
-        .expect("the passes exist");
+    run_pipeline(
+        &mut optimised,
+        SOFTWARE,
+        &Settings::default(),
+        &mut |_, _| {},
+    )
+    .expect("the passes exist");
     let stimulus = random_stimulus(module, &mut Rng::new(seed), SCANS);
     compare_engines(
         module,

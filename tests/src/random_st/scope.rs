@@ -83,7 +83,11 @@ fn onward(route: &Route, types: &Types, units: &[Unit]) -> Vec<Route> {
     match route.ty {
         Type::Elementary(ty) if ty.kind() == Kind::Bits => bits(route, ty),
         Type::Text { wide, length } => {
-            let ty = if wide { Elementary::Wchar } else { Elementary::Char };
+            let ty = if wide {
+                Elementary::Wchar
+            } else {
+                Elementary::Char
+            };
             let step = Step::Character(length);
             let character = route.then(step, Type::Elementary(ty));
             vec![Route {

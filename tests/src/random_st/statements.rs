@@ -43,9 +43,10 @@ impl Generator<'_> {
         let route = self.routes[self.rng.pick(&targets)].clone();
         self.write_route(&route);
         self.put(" := ");
-        match route.ty {
-            Type::Subrange(_) => self.limited(route.ty),
-            ty => self.value(ty),
+        if let Type::Subrange(_) = route.ty {
+            self.limited(route.ty);
+        } else {
+            self.value(route.ty);
         }
         self.put(";\n");
     }
@@ -73,9 +74,9 @@ impl Generator<'_> {
 
     /// A reference or an interface gets something to refer to.
     pub(super) fn refer(&mut self) -> bool {
-        let interface = |ty| match ty {
-            Type::Instance(at) => self.units[at].is_interface,
-            _ => false,
+        let interface = |ty: Type| {
+            let unit = ty.as_instance();
+            unit.is_some_and(|at| self.units[at].is_interface)
         };
         let routes = self.routes.iter().enumerate();
         let targets: Vec<usize> = routes
@@ -89,16 +90,20 @@ impl Generator<'_> {
         let route = self.routes[self.rng.pick(&targets)].clone();
         self.write_route(&route);
         self.put(" := ");
-        match route.ty {
-            Type::Instance(at) => self.implementor(at),
-            ty => self.reference(ty),
+        match route.ty.as_instance() {
+            Some(interface) => self.implementor(interface),
+            None => self.reference(route.ty),
         }
         self.put(";\n");
         true
     }
 
     fn implementor(&mut self, interface: usize) {
-        let units: Vec<bool> = self.units.iter().map(|u| u.above.contains(&interface)).collect();
+        let units: Vec<bool> = self
+            .units
+            .iter()
+            .map(|u| u.above.contains(&interface))
+            .collect();
         let implements = |ty| matches!(ty, Type::Instance(at) if units[at]);
         if !self.way(|route| implements(route.ty) && route.keeps) {
             self.put("NULL");

@@ -86,9 +86,7 @@ impl Elementary {
 
     /// Whether a value becomes one of another type without being told to.
     pub(super) fn widens_to(self, to: Self) -> bool {
-        use Kind::{
-            Bits, Bool, Character, Clock, Date, Duration, Moment, Real, Signed, Unsigned,
-        };
+        use Kind::{Bits, Bool, Character, Clock, Date, Duration, Moment, Real, Signed, Unsigned};
         let (from_bits, to_bits) = (self.bits(), to.bits());
         match (self.kind(), to.kind()) {
             (Signed, Signed)
@@ -144,7 +142,10 @@ impl Elementary {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Type {
     Elementary(Elementary),
-    Text { wide: bool, length: u32 },
+    Text {
+        wide: bool,
+        length: u32,
+    },
     Enumeration(usize),
     Subrange(usize),
     Array(usize),
@@ -159,6 +160,23 @@ pub(super) enum Type {
 impl Type {
     pub(super) const BOOL: Self = Self::Elementary(Elementary::Bool);
     pub(super) const INT: Self = Self::Elementary(Elementary::Int);
+
+    pub(super) fn as_elementary(self) -> Option<Elementary> {
+        if let Self::Elementary(ty) = self {
+            Some(ty)
+        } else {
+            None
+        }
+    }
+
+    /// The unit of an instance.
+    pub(super) fn as_instance(self) -> Option<usize> {
+        if let Self::Instance(at) = self {
+            Some(at)
+        } else {
+            None
+        }
+    }
 
     /// Whether a variable of it is assigned and compared as one value.
     pub(super) fn is_value(self) -> bool {
@@ -221,7 +239,10 @@ impl Types {
     pub(super) fn written(&self, ty: Type) -> String {
         match ty {
             Type::Elementary(ty) => ty.word().to_owned(),
-            Type::Text { wide: false, length } => format!("STRING[{length}]"),
+            Type::Text {
+                wide: false,
+                length,
+            } => format!("STRING[{length}]"),
             Type::Text { wide: true, length } => format!("WSTRING[{length}]"),
             Type::Enumeration(at) => self.enumerations[at].name.clone(),
             Type::Subrange(at) => self.subranges[at].name.clone(),
@@ -270,7 +291,9 @@ impl Types {
         if rng.one_in(2) {
             return rng.pick(Elementary::ALL);
         }
-        rng.pick(&[Bool, Bool, Sint, Int, Int, Dint, Uint, Word, Dword, Real, Lreal, Time])
+        rng.pick(&[
+            Bool, Bool, Sint, Int, Int, Dint, Uint, Word, Dword, Real, Lreal, Time,
+        ])
     }
 
     /// A type of one value.
@@ -378,9 +401,10 @@ impl Types {
         use Elementary::{Dint, Int, Lint, Sint, Udint, Uint, Usint};
         let name = format!("R{index}");
         let base = rng.pick(&[Sint, Int, Dint, Lint, Usint, Uint, Udint]);
-        let low = match base.kind() {
-            Kind::Unsigned => rng.below(10) as i64,
-            _ => rng.below(30) as i64 - 20,
+        let low = if base.kind() == Kind::Unsigned {
+            rng.below(10) as i64
+        } else {
+            rng.below(30) as i64 - 20
         };
         let high = low + rng.below(90) as i64;
         let text = format!("{name} : {} ({low}..{high});", base.word());

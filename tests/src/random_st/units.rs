@@ -206,7 +206,11 @@ impl Generator<'_> {
         self.counters = frame.counters;
         (self.cost, self.turns, self.loops) = (1, 1, 0);
         self.left = size + self.rng.below(size);
-        if self.routes.iter().any(|route| matches!(route.ty, Type::Reference(_))) {
+        if self
+            .routes
+            .iter()
+            .any(|route| matches!(route.ty, Type::Reference(_)))
+        {
             for _ in 0..2 {
                 let start = self.draft.position();
                 self.refer();
@@ -241,7 +245,7 @@ impl Generator<'_> {
         frame.add_params(&signature.params);
         let mut seen = inner;
         seen.add_params(&seen_by_methods(&signature.params));
-        let methods = self.methods(seen);
+        let methods = self.methods(&seen);
         signature.cost = self.body(frame, 4);
         self.put("END_FUNCTION_BLOCK\n");
         self.draft.mark(start, "");
@@ -306,7 +310,7 @@ impl Generator<'_> {
         });
     }
 
-    fn methods(&mut self, seen: Frame) -> Vec<Signature> {
+    fn methods(&mut self, seen: &Frame) -> Vec<Signature> {
         let count = self.rng.pick(&[0, 0, 1, 2]);
         let methods = (0..count).map(|index| {
             let result = self.rng.one_in(2).then(|| self.types.value(self.rng));
@@ -373,15 +377,21 @@ impl Generator<'_> {
     pub(super) fn relatives(&mut self) {
         let result = Some(self.types.value(self.rng));
         let prototype = self.signature("act", result, true);
-        let interface = self.interface(prototype.clone());
-        let base = self.class("Base", " IMPLEMENTS Acting", "", &prototype, vec![interface]);
+        let interface = self.interface(&prototype);
+        let base = self.class(
+            "Base",
+            " IMPLEMENTS Acting",
+            "",
+            &prototype,
+            vec![interface],
+        );
         let above = vec![interface, base];
         self.class("Derived", " EXTENDS Base", " OVERRIDE", &prototype, above);
     }
 
-    fn interface(&mut self, prototype: Signature) -> usize {
+    fn interface(&mut self, prototype: &Signature) -> usize {
         self.put("INTERFACE Acting\n");
-        self.head("METHOD", &prototype);
+        self.head("METHOD", prototype);
         self.put("END_METHOD\nEND_INTERFACE\n");
         self.types.instances.push("Acting".to_owned());
         self.units.push(Unit {

@@ -54,12 +54,13 @@ impl Generator<'_> {
         let bare = self.rng.one_in(2);
         let constants = self.constants.iter().filter(|(_, of)| *of == ty);
         let constants: Vec<String> = constants.map(|(name, _)| name.clone()).collect();
-        let literal = match ty {
-            _ if !constants.is_empty() && self.rng.one_in(2) => {
-                constants[self.rng.below(constants.len())].clone()
+        let literal = if !constants.is_empty() && self.rng.one_in(2) {
+            constants[self.rng.below(constants.len())].clone()
+        } else {
+            match ty.as_elementary().filter(|_| bare) {
+                Some(ty) => self.bare_literal(ty),
+                None => self.literal(ty),
             }
-            Type::Elementary(ty) if bare => self.bare_literal(ty),
-            _ => self.literal(ty),
         };
         self.marked(ty, |this| this.put(&literal));
     }
@@ -149,10 +150,16 @@ impl Generator<'_> {
         let start = self.draft.position();
         let inside = low + self.rng.below((high - low + 1) as usize) as i64;
         self.nested += 1;
-        let choice = if self.nested > 2 { 7 } else { self.rng.below(8) };
+        let choice = if self.nested > 2 {
+            7
+        } else {
+            self.rng.below(8)
+        };
         match choice {
             0 => {
-                let ty = self.rng.pick(&[Elementary::Int, Elementary::Dint, Elementary::Lint]);
+                let ty = self
+                    .rng
+                    .pick(&[Elementary::Int, Elementary::Dint, Elementary::Lint]);
                 let ty = Type::Elementary(ty);
                 if !self.variable(ty) {
                     self.put(&inside.to_string());
@@ -211,7 +218,11 @@ impl Generator<'_> {
         let first = self.draft.position();
         // Times of the short and the long family do not mix in differences of dates.
         let may_narrow = left == right && (result == left || result == Type::BOOL);
-        let narrow = if may_narrow { self.narrower(left) } else { None };
+        let narrow = if may_narrow {
+            self.narrower(left)
+        } else {
+            None
+        };
         self.operand(narrow.unwrap_or(left), depth);
         let middle = self.draft.position();
         self.put(&format!(" {op} "));
@@ -373,7 +384,9 @@ impl Generator<'_> {
             }
             1 | 2 => {
                 let name = self.rng.pick(&["SHL", "SHR", "ROL", "ROR"]);
-                let count = self.rng.pick(&[Elementary::Int, Elementary::Usint, Elementary::Dint]);
+                let count = self
+                    .rng
+                    .pick(&[Elementary::Int, Elementary::Usint, Elementary::Dint]);
                 self.standard_call(name, &[full, Type::Elementary(count)], depth);
             }
             3 => {
@@ -464,7 +477,11 @@ impl Generator<'_> {
 
     fn shifted_time(&mut self, ty: Elementary, depth: u32) {
         let full = Type::Elementary(ty);
-        let by = if ty.is_long() { Elementary::Ltime } else { Elementary::Time };
+        let by = if ty.is_long() {
+            Elementary::Ltime
+        } else {
+            Elementary::Time
+        };
         if self.rng.one_in(4) {
             return self.selection(full, depth);
         }
@@ -625,10 +642,9 @@ fn converts(from: Elementary, to: Elementary) -> bool {
         (Bits, Real) => from.bits() == to.bits(),
         (Real, Bits) => from.bits() == to.bits(),
         (Signed | Unsigned | Real, Duration) => true,
-        (Duration, Duration)
-        | (Clock, Clock)
-        | (Moment, Moment | Date | Clock)
-        | (Date, Date) => from.is_long() || !to.is_long() || from.kind() == to.kind(),
+        (Duration, Duration) | (Clock, Clock) | (Moment, Moment | Date | Clock) | (Date, Date) => {
+            from.is_long() || !to.is_long() || from.kind() == to.kind()
+        }
         (Character, Character) => true,
         (Bits, Character) => from.bits() == to.bits(),
         (Character, Bits) => from.bits() <= to.bits(),

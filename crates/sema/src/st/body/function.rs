@@ -1,8 +1,8 @@
 //! Calls of functions and methods, of the user and of the library.
 
-use super::part::shared_bytes;
 use super::library::Given;
 use super::object::{Run, Target, function_target};
+use super::part::shared_bytes;
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{Call, ExprId, ExprKind, PathId, StmtKind};
 use crate::st::constant::Const;
