@@ -18,7 +18,8 @@ impl Body<'_, '_> {
             return Some(format!("{what} has no reference"));
         }
         if place.rights == Rights::Value {
-            return Some("the value of a property is a copy, which nothing can refer to");
+            let copy = "the value of a property is a copy, which nothing can refer to";
+            return Some(copy.to_owned());
         }
         if place.rights == Rights::Constant {
             return Some("a constant has no reference".to_owned());
