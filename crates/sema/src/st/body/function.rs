@@ -365,7 +365,9 @@ impl Body<'_, '_> {
     /// What a VAR_IN_OUT CONSTANT stands for (CODESYS): nothing changes it, so a value will do.
     fn constant_in_out(&mut self, var: &Var, operand: &Operand) -> PathId {
         let same = self.an.types.strip(operand.ty) == self.an.types.strip(var.ty);
-        if let (OperandKind::Place(place), true) = (&operand.kind, same) {
+        if let (OperandKind::Place(place), true) = (&operand.kind, same)
+            && shared_bytes(place).is_none()
+        {
             let place = place.clone();
             return self.path_of(&place, operand.range);
         }
