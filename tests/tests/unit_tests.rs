@@ -167,6 +167,124 @@ fn a_test_that_does_not_end_is_abandoned() {
     }
 }
 
+/// Statements of a test, and the only message they give: its code and the text it points at.
+const MISTAKES: [(&str, &str, &str); 26] = [
+    ("ASSERT_EQ();", "E3061", "ASSERT_EQ()"),
+    ("ASSERT_EQ(n);", "E3061", "ASSERT_EQ(n)"),
+    (
+        "ASSERT_EQ(n, 1, 'a', 'b');",
+        "E3061",
+        "ASSERT_EQ(n, 1, 'a', 'b')",
+    ),
+    ("ASSERT_EQ(n, 1, n);", "E3061", "n"),
+    (
+        "ASSERT_EQ(actual := n, expected := 1);",
+        "E3061",
+        "actual := n",
+    ),
+    ("n := ASSERT_EQ(n, 1);", "E3061", "ASSERT_EQ"),
+    ("ADVANCE_TIME(T#-1ms);", "E3061", "T#-1ms"),
+    (
+        "ADVANCE_TIME(T#1ms, 'message');",
+        "E3061",
+        "ADVANCE_TIME(T#1ms, 'message')",
+    ),
+    ("ADVANCE_TIME(1.5);", "E2020", "1.5"),
+    ("ADVANCE_TIME('1s');", "E2020", "'1s'"),
+    ("ASSERT_EQ(n, 'text');", "E2029", "ASSERT_EQ(n, 'text')"),
+    ("ASSERT_EQ(n, nothing);", "E1012", "nothing"),
+    ("ASSERT_EQ(f, f);", "E2027", "ASSERT_EQ(f, f)"),
+    ("ASSERT_LT(r, r);", "E2027", "ASSERT_LT(r, r)"),
+    ("ASSERT_TRUE(n);", "E2020", "n"),
+    ("ASSERT_FALSE(n);", "E2020", "n"),
+    ("ASSERT_NEAR('a', 'b', 1);", "E2027", "'a'"),
+    (
+        "ASSERT_NEAR(n, 1, T#1s);",
+        "E2029",
+        "ASSERT_NEAR(n, 1, T#1s)",
+    ),
+    ("ASSERT_TRU(n = 1);", "E1018", "ASSERT_TRU"),
+    ("MOCK n;", "E3062", "n"),
+    ("MOCK Pump;", "E3004", "Pump"),
+    ("MOCK_FUNCTION ABS RETURNS 1;", "E3062", "ABS"),
+    ("MOCK_FUNCTION Pump RETURNS 1;", "E3062", "Pump"),
+    ("MOCK_FUNCTION g RETURNS 'text';", "E2020", "'text'"),
+    ("MOCK_VERIFY_CALLED(n);", "E3062", "n"),
+    ("MOCK_VERIFY_CALL_COUNT(f, 1.5);", "E2020", "1.5"),
+];
+
+#[test]
+fn mistakes_in_tests_have_one_message_each() {
+    let mut wrong = Vec::new();
+    for (statement, code, place) in MISTAKES {
+        let text = format!(
+            "FUNCTION_BLOCK Pump VAR_INPUT x : INT; END_VAR END_FUNCTION_BLOCK
+            FUNCTION g : INT g := 1; END_FUNCTION
+            TEST 'a' VAR n : INT; f : Pump; r : REF_TO INT; END_VAR r := REF(n); f(x := n); {statement} END_TEST"
+        );
+        let (map, sources) = load("t.st", &text);
+        let options = FrontOptions {
+            tests: Tests::Checked,
+            ..FrontOptions::default()
+        };
+        let mut diagnostics = Diagnostics::new();
+        check(&map, &sources, &options, &mut diagnostics);
+        let told = diagnostics.iter().map(|diagnostic| {
+            let label = diagnostic.primary.as_ref().expect("a place");
+            (diagnostic.code.as_str(), map.slice(label.span))
+        });
+        let told: Vec<_> = told.collect();
+        if told != [(code, place)] {
+            wrong.push(format!("{statement} gives {told:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// The indented blocks of a page that hold a test.
+fn examples(page: &str) -> Vec<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(page);
+    let text = std::fs::read_to_string(path).expect("the page");
+    let lines: Vec<&str> = text.lines().collect();
+    let inside = |line: &&str| line.is_empty() || line.starts_with("    ");
+    let blocks = lines.split(|line| !inside(&line));
+    let blocks = blocks.map(|lines| lines.join("\n"));
+    // Dots stand for what is left out.
+    let whole = |block: &String| block.contains("END_TEST") && !block.contains('…');
+    blocks.filter(whole).collect()
+}
+
+#[test]
+fn examples_of_the_manual_pass() {
+    for page in ["README.md", "docs/testing.md"] {
+        let examples = examples(page);
+        assert_eq!(examples.len(), 1, "{page}");
+        for text in examples {
+            let (map, sources) = load(page, &text);
+            let program = compiled(&map, &sources, &FrontOptions::default());
+            assert_eq!(program.tests().len(), 1, "{page}");
+            for engine in ENGINES {
+                assert_eq!(failures(&program, engine), [], "{page} on {engine:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn examples_of_the_codes_give_them() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("codes");
+    for code in ["E6090", "E6091"] {
+        let text = std::fs::read_to_string(folder.join(code).with_extension("st"));
+        let (map, sources) = load("example.st", &text.expect("an example"));
+        let program = compiled(&map, &sources, &FrontOptions::default());
+        for engine in ENGINES {
+            let failures = failures(&program, engine);
+            assert_eq!(failures.len(), 1, "{code}");
+            assert_eq!(failures[0].diagnostic.code.as_str(), code);
+        }
+    }
+}
+
 /// What is checked and compiled, to the end or with a message.
 fn survives(text: &str) {
     let (map, sources) = load("t.st", text);

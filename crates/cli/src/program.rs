@@ -139,6 +139,11 @@ impl Program {
         }
     }
 
+    /// Whether an option says which program runs.
+    pub(crate) fn names_entry(&self) -> bool {
+        self.entry.is_some()
+    }
+
     /// Reads the program and compiles its tests.
     pub(crate) fn compile_tests(&self, messages: &mut Messages) -> Option<TestProgram> {
         let (sources, project) = self.read(messages, Tests::Run)?;

@@ -39,8 +39,11 @@ enum EngineChoice {
 /// Runs the tests; results and what is wrong go into the messages.
 ///
 /// # Errors
-/// There is no test, or none that fits.
+/// There is no test, or none that fits, or an option means nothing for tests.
 pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) -> Result<(), String> {
+    if arguments.program.names_entry() {
+        return Err("--entry means nothing for tests, which call what is to run".to_owned());
+    }
     let Some(program) = arguments.program.compile_tests(messages) else {
         return Ok(());
     };

@@ -167,6 +167,10 @@ fn nothing_to_run_is_wrong_usage() {
             &["test", "motor.st", "tests", "--filter", "pump"],
             "error: no test matches `pump`\n",
         ),
+        (
+            &["test", "motor.st", "tests", "--entry", "Main"],
+            "error: --entry means nothing for tests, which call what is to run\n",
+        ),
     ] {
         let output = iecc(folder.path(), arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

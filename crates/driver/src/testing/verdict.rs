@@ -50,9 +50,9 @@ fn plain(bits: u64, probe: &Probe) -> String {
 /// The message of an assertion that did not hold.
 pub(super) fn assertion(check: &Check, test: &Test, operands: &[String]) -> Diagnostic {
     let name = check.kind.name();
-    let mut message = format!("{name} failed in `{}`", test.title);
-    if let Some(says) = &check.message {
-        message = format!("{message}: {says}");
+    let mut message = format!("{name} failed in `{}`", one_line(&test.title));
+    if let Some(says) = check.message.as_ref().filter(|says| !says.is_empty()) {
+        message = format!("{message}: {}", one_line(says));
     }
     let label = got_and_expected(check.kind, operands);
     Diagnostic::new(Code::E6090, check.span, message).label(label)
@@ -84,10 +84,15 @@ fn calls(number: &str) -> String {
     format!("{number} call{plural}")
 }
 
+/// Texts of users without line ends and the like.
+fn one_line(text: &str) -> String {
+    text.replace(char::is_control, "\u{fffd}")
+}
+
 /// The message of a fault.
 pub(super) fn fault(module: &Module, test: &Test, fault: Fault) -> Diagnostic {
     let origin = fault.origin.map(|origin| &module.origins[origin]);
-    let message = format!("`{}` was abandoned: {fault}", test.title);
+    let message = format!("`{}` was abandoned: {fault}", one_line(&test.title));
     let span = origin.and_then(|origin| origin.span).unwrap_or(test.span);
     let diagnostic = Diagnostic::new(Code::E6091, span, message);
     match origin {

@@ -170,7 +170,7 @@ impl Analysis<'_> {
                 }
                 InstancePart::Mock => {
                     let ty = Type::Elementary(Elementary::Lint);
-                    ("__mock".to_owned(), ty, TypeId::ERROR, true)
+                    ("mock'".to_owned(), ty, TypeId::ERROR, true)
                 }
                 InstancePart::Base(base) => {
                     let ty = Type::Struct(self.instance_struct(base));

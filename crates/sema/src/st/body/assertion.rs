@@ -164,17 +164,17 @@ impl Body<'_, '_> {
     }
 
     fn truth(&mut self, kind: CheckKind, value: st::Id<st::Expr>, range: TextRange) -> Tried {
-        let operand = self.operand(value, Some(TypeId::BOOL));
-        if !operand.is_error() && self.an.types.strip(operand.ty) != TypeId::BOOL {
-            self.mismatch(&operand, TypeId::BOOL);
+        let operand = self.expr(value, Some(TypeId::BOOL));
+        if operand.is_error() {
+            return Tried::from((Vec::new(), operand));
         }
-        let holds = if kind == CheckKind::False {
-            self.unary_on(UnaryOp::Not, operand.clone(), range, Some(TypeId::BOOL))
-        } else {
-            operand.clone()
+        let value = self.condition(&operand);
+        let operand = self.hold(Operand::value(value, TypeId::BOOL, operand.range));
+        let holds = match kind {
+            CheckKind::False => self.unary_on(UnaryOp::Not, operand.clone(), range, None),
+            _ => operand.clone(),
         };
-        let operands = vec![operand];
-        Tried { operands, holds }
+        Tried::from((vec![operand], holds))
     }
 
     /// `ABS(left - right) <= tolerance`, also where the types have no negative values or the

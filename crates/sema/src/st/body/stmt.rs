@@ -315,8 +315,8 @@ impl Body<'_, '_> {
         };
         let place = place.clone();
         let why = match place.rights {
-            // Tests prepare what blocks give.
-            Rights::OtherOutput if self.in_test() => return Some(place),
+            // Tests prepare what blocks give, and what comes from outside.
+            Rights::OtherOutput | Rights::OwnInput if self.in_test() => return Some(place),
             Rights::All | Rights::Temporary if !self.is_loop_variable(&place) => {
                 return Some(place);
             }

@@ -22,7 +22,7 @@ impl Analysis<'_> {
         for case in self.testing.cases.clone() {
             let ty = self.types.intern(TypeKind::Instance(case.test));
             let (storage, init) = (self.storage(ty), self.default_init(ty));
-            let name = format!("__test{}", runs.len() + 1);
+            let name = format!("test'{}", runs.len() + 1);
             let span = self.pou(case.test).span;
             let tag = self.add_tag(&name, storage, View::Number, init, Some(span));
             let fixture = whole_or_base(tag, case.setup.is_some());

@@ -42,10 +42,10 @@ pub struct Suite {
 }
 
 impl Suite {
-    /// The input that holds the number of the test to run.
-    pub const CHOICE: &'static str = "__test";
+    /// The input that holds the number of the test to run. Names of users have no apostrophe.
+    pub const CHOICE: &'static str = "test'";
     /// The output that holds the number of the check that failed, 0 if none did.
-    pub const FAILED: &'static str = "__failed";
+    pub const FAILED: &'static str = "failed'";
 }
 
 /// A test.
@@ -272,7 +272,7 @@ impl Analysis<'_> {
         if let Some(known) = self.testing.clock {
             return known;
         }
-        let tag = self.hidden_tag("__now", Elementary::Lint, View::Time);
+        let tag = self.hidden_tag("now'", Elementary::Lint, View::Time);
         self.testing.clock = Some(tag);
         tag
     }
@@ -283,7 +283,7 @@ impl Analysis<'_> {
         let tag = match self.testing.operands.get(&key) {
             Some(&known) => known,
             None => {
-                let name = format!("__operand{}", self.testing.operands.len());
+                let name = format!("operand'{}", self.testing.operands.len());
                 let tag = self.add_tag(&name, key.0, key.1, None, None);
                 self.testing.operands.insert(key, tag);
                 tag
@@ -338,11 +338,11 @@ impl Analysis<'_> {
         if known.is_some() {
             return known;
         }
-        let name = format!("__mock_{}", self.text(self.pou(function).name));
+        let name = format!("mock'{}", self.text(self.pou(function).name));
         let name = self.unique_unit_name(name);
         let flag = self.hidden_tag(&name, Elementary::Bool, View::Number);
         let (storage, view) = (self.storage(result), self.view(result));
-        let value = self.add_tag(&format!("{name}_value"), storage, view, None, None);
+        let value = self.add_tag(&format!("{name}'value"), storage, view, None, None);
         let made = Some(MockedFunction { flag, value });
         self.testing.functions.insert(function, made);
         made

@@ -47,7 +47,10 @@ impl Analysis<'_> {
             self.pous[test.index()].extends.extend(fixture.setup);
             let Test { file, title, span } = self.described(test);
             match titles.get(&(file, title.clone())) {
-                Some(&first) => self.twice(&format!("the test `{title}`"), span, first),
+                Some(&first) => {
+                    let message = format!("this file has a test `{title}` already");
+                    self.twice(message, span, first);
+                }
                 None => drop(titles.insert((file, title), span)),
             }
             self.testing.cases.push(Case {
@@ -75,15 +78,16 @@ impl Analysis<'_> {
         let made = self.declare_test(unit, pou_kind);
         if let Some(first) = *first {
             let (span, first) = (self.pou(made).span, self.pou(first).span);
-            self.twice(&format!("{} of a file", kind.as_str()), span, first);
+            let message = format!("this file has a {} already", kind.as_str());
+            self.twice(message, span, first);
             return;
         }
         *first = Some(made);
     }
 
-    fn twice(&mut self, what: &str, span: Span, first: Span) {
-        let diagnostic = Diagnostic::new(Code::E1003, span, format!("{what} is declared twice"));
-        self.report(diagnostic.also(first, "declared here first"));
+    fn twice(&mut self, message: String, span: Span, first: Span) {
+        let diagnostic = Diagnostic::new(Code::E1003, span, message);
+        self.report(diagnostic.also(first, "here"));
     }
 
     fn declare_test(&mut self, unit: UnitId, kind: PouKind) -> PouId {
