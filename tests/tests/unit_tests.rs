@@ -247,7 +247,7 @@ fn examples(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(path).expect("the page");
     let lines: Vec<&str> = text.lines().collect();
     let inside = |line: &&str| line.is_empty() || line.starts_with("    ");
-    let blocks = lines.split(|line| !inside(&line));
+    let blocks = lines.split(|line| !inside(line));
     let blocks = blocks.map(|lines| lines.join("\n"));
     // Dots stand for what is left out.
     let whole = |block: &String| block.contains("END_TEST") && !block.contains('…');
