@@ -35,6 +35,8 @@ pub(crate) fn feed(
         base: fragment.start,
         diagnostics,
         hole: false,
+        tries: false,
+        catches: false,
         misspelt: BTreeSet::new(),
         feed: Feed {
             tokens: Vec::with_capacity(list.len()),
@@ -53,6 +55,10 @@ struct Feeder<'f, 't> {
     diagnostics: &'f mut Diagnostics,
     /// Whether something was left out before the next token.
     hole: bool,
+    /// Whether a message about exceptions has been given.
+    tries: bool,
+    /// Whether what follows belongs to `__CATCH`.
+    catches: bool,
     /// Names that a message was given for.
     misspelt: BTreeSet<Symbol>,
     feed: Feed,
@@ -60,6 +66,9 @@ struct Feeder<'f, 't> {
 
 impl Feeder<'_, '_> {
     fn take(&mut self, mut token: Token) {
+        if self.is_of_exception(token) {
+            return;
+        }
         match token.kind {
             Kind::Comment | Kind::Merged => return,
             Kind::Pragma => return self.pragma(token),
@@ -184,6 +193,30 @@ impl Feeder<'_, '_> {
         let text = self.tokens.slice(token);
         let message = format!("the name `{text}` has letters outside ASCII");
         self.report(Code::E0017, token, message);
+    }
+
+    /// `__TRY`, `__CATCH(…)`, `__FINALLY` and `__ENDTRY` of CODESYS are left out, with one message.
+    fn is_of_exception(&mut self, token: Token) -> bool {
+        if std::mem::take(&mut self.catches) {
+            self.catches = token.kind != Kind::CloseParen;
+            return matches!(token.kind, Kind::OpenParen | Kind::Word | Kind::CloseParen);
+        }
+        if token.kind != Kind::Word {
+            return false;
+        }
+        let text = self.tokens.slice(token);
+        let is = |word: &str| text.eq_ignore_ascii_case(word);
+        let words = ["__TRY", "__CATCH", "__FINALLY", "__ENDTRY"];
+        if !words.into_iter().any(is) {
+            return false;
+        }
+        self.catches = is("__CATCH");
+        if is("__TRY") || !self.tries {
+            let message = "exceptions are not compiled: a fault ends the scan";
+            self.report(Code::E8002, token, message);
+        }
+        self.tries = true;
+        true
     }
 
     /// Names that begin with two underlines are those of the standard library.

@@ -164,30 +164,31 @@ impl Analysis<'_> {
         Ok(Some(Address { area, first, bits }))
     }
 
-    /// Whether an address is one that VAR_CONFIG gives.
-    pub(crate) fn is_partly(&self, unit: UnitId, id: st::Id<st::Expr>) -> bool {
-        matches!(
-            self.unit(unit).arena[id].kind,
+    /// The area of an address that VAR_CONFIG gives.
+    pub(crate) fn partly_area(&self, unit: UnitId, id: st::Id<st::Expr>) -> Option<Area> {
+        match self.unit(unit).arena[id].kind {
             ExprKind::Direct(Direct {
-                fields: None,
-                area: Some(_),
-                ..
-            })
-        )
+                fields: None, area, ..
+            }) => area,
+            _ => None,
+        }
     }
 
-    /// Whether VAR_CONFIG gives the address of a member; others are at a place in the structure.
-    pub(crate) fn member_location(&mut self, unit: UnitId, decl: &st::VarDecl) -> bool {
-        let Some(location) = decl.location else {
-            return false;
-        };
+    /// Whether an address is one that VAR_CONFIG gives.
+    pub(crate) fn is_partly(&self, unit: UnitId, id: st::Id<st::Expr>) -> bool {
+        self.partly_area(unit, id).is_some()
+    }
+
+    /// The area of the address that VAR_CONFIG gives a member; others are at a place in the structure.
+    pub(crate) fn member_location(&mut self, unit: UnitId, decl: &st::VarDecl) -> Option<Area> {
+        let location = decl.location?;
         let written = self.unit(unit).arena[location];
         match written.kind {
             ExprKind::Direct(Direct {
-                area: Some(_),
+                area: Some(area),
                 fields: None,
                 ..
-            }) => return true,
+            }) => return Some(area),
             // `overlay` looks at it.
             ExprKind::Direct(Direct { area: None, .. }) => {}
             _ => {
@@ -196,7 +197,7 @@ impl Analysis<'_> {
                 self.error(Code::E2003, span, message);
             }
         }
-        false
+        None
     }
 
     /// Looks at all addresses of the user's units, and makes their tags.

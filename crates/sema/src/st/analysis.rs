@@ -89,6 +89,8 @@ pub(crate) struct Analysis<'a> {
     pub addresses: super::address::Addresses,
     /// The instances of programs, by name.
     pub program_instances: Vec<(Symbol, PouId, hir::TagId)>,
+    /// The names of variables and programs outside of units, in lower case.
+    pub tag_names: FxHashSet<String>,
     /// All instances of each program.
     pub program_tags: FxHashMap<PouId, Vec<hir::TagId>>,
     /// Instances of library units, by what was bound.

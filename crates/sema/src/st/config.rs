@@ -3,7 +3,7 @@
 use super::analysis::Analysis;
 use super::body::Connections;
 use super::paths::Found;
-use super::signature::{Def, PouId, State, Storage, UnitId, Var};
+use super::signature::{Def, PouId, Storage, UnitId, Var};
 use super::types::{TypeId, TypeKind};
 use crate::hir::{IoPoint, Place, TagId, Task, Trigger};
 use iecc_ast::Symbol;
@@ -84,7 +84,7 @@ impl Analysis<'_> {
                         edge: None,
                         access: None,
                         storage: Storage::Local,
-                        partly: false,
+                        partly: None,
                     };
                     self.external_of(unit, scope.namespace, &var);
                 }
@@ -515,26 +515,5 @@ impl Analysis<'_> {
         let place = &found.place;
         let initial = &mut self.hir.tags[place.tag.index()].initial;
         initial.push((place.path.clone(), bits));
-    }
-
-    /// Every variable at an address with `*` needs VAR_CONFIG.
-    pub(crate) fn check_places(
-        &mut self,
-        program: PouId,
-        tag: TagId,
-        name: &str,
-        placed: &[Place],
-    ) {
-        if self.pou(program).state != State::Done {
-            return;
-        }
-        let ty = self.types.intern(TypeKind::Instance(program));
-        for (path, place) in self.partly_places(ty, tag, name) {
-            if !placed.contains(&place) {
-                let span = self.pou(program).span;
-                let message = format!("no VAR_CONFIG says at which address `{path}` lies");
-                self.error(Message::E6044, span, message);
-            }
-        }
     }
 }

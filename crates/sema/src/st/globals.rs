@@ -127,6 +127,7 @@ impl Analysis<'_> {
     fn place_global(&mut self, global: &Global) -> Option<Spot> {
         let Some(location) = global.decl.location else {
             let name = self.global_name(global);
+            let name = self.free_tag_name(name);
             let (storage, view) = (self.storage(global.ty), self.view(global.ty));
             let tag = self.add_tag(&name, storage, view, None, Some(global.span));
             if let Some(list) = global.list.filter(|_| !global.qualified) {
@@ -136,7 +137,11 @@ impl Analysis<'_> {
             let steps = Vec::new();
             return Some(Spot { tag, steps });
         };
-        if self.is_partly(global.unit, location) {
+        let partly = self.partly_area(global.unit, location);
+        if let Some(area) = partly.filter(|_| self.options.codesys) {
+            return Some(self.linked_global(global, area));
+        }
+        if partly.is_some() {
             let range = self.unit(global.unit).arena[location].range;
             self.unsupported(global.unit, range, "a global variable at `*`");
         }
@@ -280,8 +285,9 @@ impl Analysis<'_> {
         let span = self.span(unit, self.unit(unit).arena[location].range);
         let owner = matches!(kind, PouKind::Program | PouKind::FunctionBlock);
         let in_var = matches!(var.section, SectionKind::Var);
-        let partly = self.is_partly(unit, location);
-        let partly_io = partly && matches!(var.section, SectionKind::Input | SectionKind::Output);
+        let partly = self.partly_area(unit, location);
+        let partly_io =
+            partly.is_some() && matches!(var.section, SectionKind::Input | SectionKind::Output);
         if !owner || !(in_var || partly_io) {
             let what = var.section.as_str();
             let message = format!("a variable of {what} cannot stand at an address here");
@@ -289,8 +295,8 @@ impl Analysis<'_> {
             var.ty = TypeId::ERROR;
             return;
         }
-        if partly {
-            var.partly = true;
+        if partly.is_some() {
+            var.partly = partly;
             return;
         }
         match self.address(unit, location) {

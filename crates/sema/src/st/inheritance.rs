@@ -137,6 +137,7 @@ impl Analysis<'_> {
 
     fn check_method_of(&mut self, id: PouId, name: Symbol, method: PouId) {
         self.check_twice(id, name, method);
+        self.check_called_by_nobody(name, method);
         let (is_abstract, is_final) = (
             self.is(method, ModifierKind::Abstract),
             self.is(method, ModifierKind::Final),
@@ -159,6 +160,20 @@ impl Analysis<'_> {
             self.check_no_statements(method);
         }
         self.check_override(id, name, method);
+    }
+
+    /// CODESYS calls some methods by itself.
+    fn check_called_by_nobody(&mut self, name: Symbol, method: PouId) {
+        let text = self.text(name);
+        let special = ["FB_init", "FB_reinit", "FB_exit"];
+        if !self.options.codesys || !special.iter().any(|word| word.eq_ignore_ascii_case(text)) {
+            return;
+        }
+        let message = format!("`{text}` would be called by itself, which is not compiled");
+        let note =
+            "give variables initial values, and call a method of another name in the first scan";
+        let diagnostic = Diagnostic::new(Code::E8002, self.pou(method).span, message);
+        self.report(diagnostic.note(note));
     }
 
     fn check_twice(&mut self, id: PouId, name: Symbol, method: PouId) {

@@ -98,7 +98,7 @@ impl Analysis<'_> {
                 edge: None,
                 access: Some(ModifierKind::Private),
                 storage: Storage::Local,
-                partly: false,
+                partly: None,
             };
             var.ty = self.check_instance(id, SectionKind::Var, &var);
             let pou = &mut self.pous[id.index()];
@@ -167,7 +167,7 @@ impl Analysis<'_> {
             edge: None,
             access: None,
             storage: Storage::Local,
-            partly: false,
+            partly: None,
         };
         let pou = &mut self.pous[id.index()];
         pou.by_name.insert(var.name, 0);

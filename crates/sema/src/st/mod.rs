@@ -36,6 +36,7 @@ mod inheritance;
 mod initial;
 mod instance;
 mod kept;
+mod linked;
 mod lint;
 mod lists;
 mod namespaces;
@@ -221,6 +222,7 @@ impl<'a> Analysis<'a> {
             addresses: address::Addresses::default(),
             program_instances: Vec::new(),
             program_tags: FxHashMap::default(),
+            tag_names: rustc_hash::FxHashSet::default(),
             instances: FxHashMap::default(),
             wanted: Vec::new(),
             families: heritage::Families::default(),

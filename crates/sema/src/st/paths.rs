@@ -5,7 +5,7 @@ use super::analysis::Analysis;
 use super::signature::{Def, PouId, Spot, Storage, UnitId};
 use super::types::{TypeId, TypeKind};
 use crate::hir::code::PathStep;
-use crate::hir::{Place, Step, TagId};
+use crate::hir::{Place, Step};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ExprKind};
 use iecc_diag::Code;
@@ -160,7 +160,7 @@ impl Analysis<'_> {
                 Some(Found {
                     place: at.place.step(Step::Field(position)),
                     ty: member.ty,
-                    partly: member.partly,
+                    partly: member.partly.is_some(),
                 })
             }
             TypeKind::Instance(pou) => self.path_variable(at.place, pou, name),
@@ -175,7 +175,7 @@ impl Analysis<'_> {
                     Storage::Field(field) => Some(Found {
                         place: place.step(Step::Field(field)),
                         ty: var.ty,
-                        partly: var.partly,
+                        partly: var.partly.is_some(),
                     }),
                     Storage::Located(address) => self.found_at(address, var.ty),
                     Storage::Global(_) | Storage::Const(_) | Storage::Local | Storage::Ref(_) => {
@@ -215,44 +215,6 @@ impl Analysis<'_> {
             at.place = at.place.step(Step::Index((index - low) as u32));
         }
         Some(Found { ty: element, ..at })
-    }
-
-    /// Everything below a variable whose address VAR_CONFIG gives, by its path.
-    pub(crate) fn partly_places(&self, ty: TypeId, tag: TagId, name: &str) -> Vec<(String, Place)> {
-        let mut places = Vec::new();
-        let mut stack = vec![(ty, Place::whole(tag), name.to_owned())];
-        while let Some((ty, place, name)) = stack.pop() {
-            let mut look = |member: Symbol, field: u32, partly: bool, ty: TypeId| {
-                let name = format!("{name}.{}", self.text(member));
-                let place = place.clone().step(Step::Field(field));
-                if partly {
-                    places.push((name, place));
-                } else {
-                    stack.push((ty, place, name));
-                }
-            };
-            match self.types.base(ty) {
-                TypeKind::Struct(index) => {
-                    let members = &self.types.structs[*index as usize].members;
-                    for (field, member) in (0..).zip(members) {
-                        look(member.name, field, member.partly, member.ty);
-                    }
-                }
-                TypeKind::Instance(pou) => {
-                    for var in &self.pou(*pou).vars {
-                        if let Storage::Field(field) = var.storage {
-                            look(var.name, field, var.partly, var.ty);
-                        }
-                    }
-                }
-                TypeKind::Array { element, .. } => {
-                    let place = place.step(Step::Index(0));
-                    stack.push((*element, place, format!("{name}[]")));
-                }
-                _ => {}
-            }
-        }
-        places
     }
 }
 

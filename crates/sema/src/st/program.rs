@@ -106,8 +106,19 @@ impl Analysis<'_> {
         let init = self.default_init(ty);
         let span = self.pou(program).span;
         let tag = self.add_tag(name, storage, hir::View::Number, init, Some(span));
+        self.tag_names.insert(name.to_ascii_lowercase());
         self.program_tags.entry(program).or_default().push(tag);
         tag
+    }
+
+    /// The name of a new tag; one that is taken, as by a variable of another namespace, gets a number.
+    pub(crate) fn free_tag_name(&mut self, name: String) -> String {
+        let (mut free, mut number) = (name.clone(), 2);
+        while !self.tag_names.insert(free.to_ascii_lowercase()) {
+            free = format!("{name}'{number}");
+            number += 1;
+        }
+        free
     }
 
     /// The instance that the name of a program stands for (CODESYS): the one that a task runs, or one
@@ -118,6 +129,7 @@ impl Analysis<'_> {
             Some([_, ..]) => None,
             Some([]) | None => {
                 let name = self.text(self.pou(program).name).to_owned();
+                let name = self.free_tag_name(name);
                 let tag = self.program_instance(program, &name);
                 self.check_places(program, tag, &name, &[]);
                 Some(tag)
@@ -159,9 +171,11 @@ impl Analysis<'_> {
             let place = Place::whole(tag).step(Step::Field(field));
             let name = self.text(var.name).to_owned();
             match var.section {
+                // Only its method sees it.
+                _ if name.contains('.') => {}
                 // What sets it is its source; the name is free for another thing.
                 _ if connected.contains(&var.name) => {}
-                _ if var.partly => self.hir.names.push((name, place)),
+                _ if var.partly.is_some() => self.hir.names.push((name, place)),
                 SectionKind::Input => self.points(&name, place.clone(), var.ty, true),
                 SectionKind::Output => self.points(&name, place.clone(), var.ty, false),
                 _ => self.hir.names.push((name, place)),
@@ -170,7 +184,7 @@ impl Analysis<'_> {
     }
 
     /// A point for every number of a variable.
-    fn points(&mut self, name: &str, place: Place, ty: TypeId, input: bool) {
+    pub(crate) fn points(&mut self, name: &str, place: Place, ty: TypeId, input: bool) {
         let points = if input {
             &mut self.hir.inputs
         } else {

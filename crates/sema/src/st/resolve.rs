@@ -471,9 +471,17 @@ impl Analysis<'_> {
     ) -> TypeId {
         let unit = self.unit(scope.unit);
         let el = match base {
+            None if self.options.codesys && !self.is_library(scope.unit) => El::Int,
             None => El::Dint,
             Some(path) => match self.elementary_path(scope, path) {
                 Some(el) if !el.is_real() => el,
+                None if self.options.codesys && self.is_block(scope, path) => {
+                    let span = self.span(scope.unit, range);
+                    let message = "arguments for FB_init are not compiled";
+                    let note = "initial values of inputs stand behind `:=`: (input := 1)";
+                    self.report(Diagnostic::new(Code::E8002, span, message).note(note));
+                    return TypeId::ERROR;
+                }
                 Some(_) | None => {
                     let span = self.span(scope.unit, unit.arena[path].range);
                     let message = "named values are of an integer or bit string type";
@@ -517,6 +525,13 @@ impl Analysis<'_> {
             }
         }
         ty
+    }
+
+    fn is_block(&self, scope: TypeScope<'_>, path: st::Id<st::Expr>) -> bool {
+        let found = self.path(scope.unit, scope.namespace, path);
+        found.is_some_and(
+            |defs| matches!(defs, [Def::Pou(pou), ..] if self.pou(*pou).has_instances()),
+        )
     }
 
     /// The value of an enumerator may name those before it.

@@ -163,8 +163,8 @@ pub struct Var {
     pub access: Option<st::ModifierKind>,
     /// Where it lives.
     pub storage: Storage,
-    /// Whether VAR_CONFIG says at which address it lives.
-    pub partly: bool,
+    /// Where it lives if VAR_CONFIG says at which address.
+    pub partly: Option<st::Area>,
 }
 
 /// Where a variable lives.

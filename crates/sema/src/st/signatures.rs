@@ -180,7 +180,7 @@ impl Analysis<'_> {
                     edge: decl.edge,
                     access,
                     storage: Storage::Local,
-                    partly: false,
+                    partly: None,
                 };
                 if let Some(location) = decl.location
                     && section.kind != SectionKind::Global
@@ -222,7 +222,7 @@ impl Analysis<'_> {
                 edge: None,
                 access: None,
                 storage: Storage::Local,
-                partly: false,
+                partly: None,
             };
             if section == SectionKind::Static {
                 self.own_static(unit, &mut var);

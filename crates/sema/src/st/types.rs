@@ -135,8 +135,8 @@ pub struct Member {
     pub ty: TypeId,
     /// The initial value its declaration gives, in the unit of the structure.
     pub initial: Option<super::signature::Initial>,
-    /// Whether VAR_CONFIG says at which address it lives.
-    pub partly: bool,
+    /// Where it lives if VAR_CONFIG says at which address.
+    pub partly: Option<iecc_ast::st::Area>,
     /// The declaration.
     pub span: Span,
 }

@@ -3,6 +3,7 @@
 
 use super::{Body, Operand};
 use crate::st::constant::Const;
+use crate::st::signature::Def;
 use crate::st::types::{ReferenceKind, TypeId};
 use iecc_ast::st::{self, Argument, ArgumentKind, ExprKind as Written};
 use iecc_diag::{Code as Message, Diagnostic};
@@ -148,7 +149,8 @@ impl Body<'_, '_> {
 
     /// The type whose size is asked for: it is written, or that of a variable.
     fn measured(&mut self, value: st::Id<st::Expr>) -> Option<TypeId> {
-        if let Some(ty) = self.named_type(value) {
+        let named = self.named_type(value);
+        if let Some(ty) = named.or_else(|| self.type_of_named(value)) {
             return (ty != TypeId::ERROR).then_some(ty);
         }
         // Nothing of it is evaluated, so it may be a variable where a constant is needed.
@@ -158,6 +160,26 @@ impl Body<'_, '_> {
         self.pending = pending;
         self.constant_only = constant_only;
         (!operand.is_error()).then(|| self.settle(&operand))
+    }
+
+    /// The type of a variable by its name alone, which may be asked for where constants are needed.
+    fn type_of_named(&mut self, value: st::Id<st::Expr>) -> Option<TypeId> {
+        let Written::Name(name) = self.arena()[value].kind else {
+            return None;
+        };
+        if let Some(var) = self.pou.and_then(|pou| self.an.pou(pou).var(name)) {
+            return Some(var.ty);
+        }
+        if self.own_symbol(name) {
+            return None;
+        }
+        match *self.an.lookup(self.namespace, name).first()? {
+            Def::Global(id) => {
+                self.an.complete_global(id);
+                Some(self.an.global(id).ty)
+            }
+            Def::Type(_) | Def::Pou(_) | Def::Namespace(_) => None,
+        }
     }
 
     fn named_type(&mut self, value: st::Id<st::Expr>) -> Option<TypeId> {
@@ -172,12 +194,12 @@ impl Body<'_, '_> {
         }
         let defs = self.an.path(self.unit, self.namespace, value)?;
         let is_type = match defs.first()? {
-            crate::st::signature::Def::Type(_) => true,
-            crate::st::signature::Def::Pou(pou) => {
+            Def::Type(_) => true,
+            Def::Pou(pou) => {
                 let kind = self.an.pou(*pou).kind;
                 matches!(kind, st::PouKind::FunctionBlock | st::PouKind::Class)
             }
-            crate::st::signature::Def::Global(_) | crate::st::signature::Def::Namespace(_) => false,
+            Def::Global(_) | Def::Namespace(_) => false,
         };
         is_type.then(|| self.an.type_by_path(scope, value))
     }

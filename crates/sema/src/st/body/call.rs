@@ -332,6 +332,11 @@ impl Body<'_, '_> {
             let defs = self
                 .an
                 .found_in(self.unit, self.namespace, namespace, member)?;
+            if let Some(Def::Pou(pou)) = defs.first()
+                && self.an.pou(*pou).kind == PouKind::Program
+            {
+                return self.instance_callee(id);
+            }
             let found = self.functions_of(&defs);
             if found.is_none() {
                 let message = format!("the namespace has no function `{}`", self.text(member.name));

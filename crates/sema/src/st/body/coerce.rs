@@ -119,9 +119,20 @@ impl Body<'_, '_> {
                 Some(self.raw(operand))
             }
             _ => {
-                let (a, b) = (self.named_base(from_ty)?, self.named_base(to_ty)?);
+                let (a, b) = (self.number_behind(from_ty)?, self.named_base(to_ty)?);
                 self.widen(operand, a, b)
             }
+        }
+    }
+
+    /// The elementary type that a value becomes without being asked: in CODESYS a value of an
+    /// enumeration is a number where one is needed.
+    pub(super) fn number_behind(&self, ty: TypeId) -> Option<El> {
+        match self.an.types.base(ty) {
+            TypeKind::Enum(index) if self.an.options.codesys => {
+                Some(self.an.types.enums[*index as usize].base)
+            }
+            _ => self.named_base(ty),
         }
     }
 

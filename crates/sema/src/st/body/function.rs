@@ -29,11 +29,24 @@ impl Body<'_, '_> {
         if let Some(value) = self.type_query(first, arguments, range) {
             return value;
         }
-        let given = self.library_arguments(first, arguments, None);
+        let mut given = self.library_arguments(first, arguments, None);
         if given.has_errors() {
             return Operand::error(range);
         }
+        if self.text(self.an.pou(first).name).starts_with("TO_") {
+            self.enumerations_as_numbers(&mut given);
+        }
         self.library(functions, given, range, want)
+    }
+
+    /// `TO_INT(colour)` of CODESYS: the number of a value of an enumeration.
+    fn enumerations_as_numbers(&self, given: &mut Given) {
+        for (_, operand) in &mut given.operands {
+            let is_enum = matches!(self.an.types.base(operand.ty), TypeKind::Enum(_));
+            if let Some(el) = self.number_behind(operand.ty).filter(|_| is_enum) {
+                operand.ty = TypeId::of(el);
+            }
+        }
     }
 
     /// A call of a library function by its name, made by the compiler.

@@ -174,7 +174,7 @@ impl Body<'_, '_> {
         if types.strip(from.ty) == types.strip(to) {
             return Some(value.clone());
         }
-        match (types.elementary(from.ty), types.elementary(to)) {
+        match (self.number_behind(from.ty), types.elementary(to)) {
             (Some(a), Some(b)) if a.widens_to(b) => Some(match value {
                 Const::Int(number) if b.is_real() => Const::Real(round_to(b, *number as f64)),
                 other => other.clone(),

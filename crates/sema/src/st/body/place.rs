@@ -442,6 +442,9 @@ impl Body<'_, '_> {
                 };
                 Some(match inner.first().copied() {
                     Some(Def::Global(id)) => self.global_place(id, false, range),
+                    Some(Def::Pou(pou)) if self.an.pou(pou).kind == PouKind::Program => {
+                        self.program(pou, range)
+                    }
                     Some(_) => {
                         let message = format!("`{}` is no variable", self.text(member.name));
                         self.error(Message::E1012, range, message)
