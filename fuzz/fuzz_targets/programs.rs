@@ -1,10 +1,15 @@
 //! Random programs in Structured Text, one for each seed: all engines for software agree.
 #![no_main]
 
+use iecc_driver::KeptLibrary;
 use iecc_tests::random_st::{Options, check_seed};
+use std::sync::LazyLock;
+
+static LIBRARY: LazyLock<KeptLibrary> = LazyLock::new(KeptLibrary::parse);
 
 libfuzzer_sys::fuzz_target!(|seed: [u8; 8]| {
-    if let Err(what) = check_seed(u64::from_le_bytes(seed), Options::default()) {
+    let seed = u64::from_le_bytes(seed);
+    if let Err(what) = check_seed(&LIBRARY, seed, Options::default()) {
         panic!("{what}");
     }
 });

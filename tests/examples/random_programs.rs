@@ -11,7 +11,7 @@
     reason = "a program for people"
 )]
 
-use iecc_driver::parallel_map;
+use iecc_driver::{KeptLibrary, parallel_map};
 use iecc_tests::random_st::{Options, Outcome, check, check_seed, policy, random_program};
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -40,15 +40,16 @@ fn main() -> ExitCode {
 }
 
 fn search(from: u64, to: u64) -> ExitCode {
-    let start = Instant::now();
+    let (library, start) = (KeptLibrary::parse(), Instant::now());
     for first in (from..to).step_by(ROUND as usize) {
         let seeds: Vec<u64> = (first..to.min(first + ROUND)).collect();
         let results = parallel_map(&seeds, |&seed| {
             let draft = random_program(seed, Options::default());
-            check(draft.text(), policy(seed), seed).map_err(|_| seed)
+            check(&library, draft.text(), policy(seed), seed).map_err(|_| seed)
         });
         if let Some(seed) = results.iter().find_map(|result| result.err()) {
-            let said = check_seed(seed, Options::default()).expect_err("it failed before");
+            let said =
+                check_seed(&library, seed, Options::default()).expect_err("it failed before");
             println!("{said}");
             return ExitCode::FAILURE;
         }
@@ -60,10 +61,11 @@ fn search(from: u64, to: u64) -> ExitCode {
 }
 
 fn survey(from: u64, to: u64) -> ExitCode {
+    let library = KeptLibrary::parse();
     let seeds: Vec<u64> = (from..to).collect();
     let results = parallel_map(&seeds, |&seed| {
         let draft = random_program(seed, Options::default());
-        check(draft.text(), policy(seed), seed)
+        check(&library, draft.text(), policy(seed), seed)
     });
     let mut kinds = BTreeMap::new();
     let (mut faults, mut clean) = (0, 0);

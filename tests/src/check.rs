@@ -8,6 +8,7 @@ use iecc_ast::Names;
 use iecc_ast::rung::Rung;
 use iecc_ast::st::{File, UnitKind, dump, print_file};
 use iecc_diag::{Code, Diagnostics};
+use iecc_driver::{FrontOptions, KeptLibrary};
 use iecc_grammar::st::{Dialect, parse_file};
 use iecc_ir::{Layout, MemType, Module, Region};
 use iecc_passes::{HARDWARE, SOFTWARE, Settings, run_pipeline};
@@ -165,4 +166,22 @@ fn parse_st(text: &str) -> (File, Names, Diagnostics) {
 
 fn outline(file: &File, names: &Names) -> String {
     file.units.iter().map(|unit| dump(unit, names)).collect()
+}
+
+/// Structured Text as a program gives a module that keeps the rules of the IR, or an error; every place
+/// lies in the text or in the library. Says which.
+pub fn st_program(library: &KeptLibrary, text: &str, options: &FrontOptions) -> bool {
+    let mut diagnostics = Diagnostics::new();
+    let module = library.compile(text, options, &mut diagnostics);
+    let own = library.file();
+    for diagnostic in &diagnostics {
+        let labels = diagnostic.primary.iter().chain(&diagnostic.secondary);
+        let own = labels.filter(|label| label.span.file == own);
+        own.for_each(|label| assert!(text.get(label.span.range()).is_some(), "{diagnostic:?}"));
+    }
+    match module {
+        Some(module) => assert_eq!(iecc_ir::verify(&module).err(), None),
+        None => assert!(diagnostics.has_errors(), "it was refused for a reason"),
+    }
+    !diagnostics.has_errors()
 }

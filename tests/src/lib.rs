@@ -4,6 +4,7 @@
 pub mod cases;
 pub mod check;
 pub mod corpus;
+pub mod damage;
 pub mod differential;
 pub mod filetest;
 pub mod ladder;

@@ -158,7 +158,7 @@ fn check_logix(
         edits: options.edits,
     };
     let mut names = Names::new();
-    let library = library(map, sources, &mut names);
+    let library = library(map, sources.library(), &mut names);
     st::intern_words(&mut names);
     let functions = logix::library_functions();
     let library = st::library(&library, &names, &functions, &Constants);
@@ -180,18 +180,27 @@ fn check_text(
         file
     };
     let files: Vec<File> = sources.files().iter().map(parse).collect();
-    let library = library(map, sources, &mut names);
-    st::intern_words(&mut names);
-    st::intern_hidden(&mut names, &files);
+    let library = library(map, sources.library(), &mut names);
+    Some(meaning(&library, &files, &mut names, options, found))
+}
+
+/// What the trees of some files mean.
+pub(crate) fn meaning(
+    library: &[File],
+    files: &[File],
+    names: &mut Names,
+    options: &FrontOptions,
+    found: &mut Diagnostics,
+) -> (hir::Program, Suite) {
+    st::intern_words(names);
+    st::intern_hidden(names, files);
     let options = st::Options {
         codesys: options.dialect == Dialect::Codesys,
         entry: options.entry.as_deref().map(|entry| names.intern(entry)),
         tests: options.tests,
     };
     let evaluator = &Constants;
-    Some(st::analyze_tests(
-        &library, &files, &names, options, evaluator, found,
-    ))
+    st::analyze_tests(library, files, names, options, evaluator, found)
 }
 
 /// What a list of global variables in a file is called: the name of the file, where that is a name.
@@ -205,9 +214,9 @@ fn list_name(path: &str) -> Option<&str> {
 }
 
 /// The trees of the standard library.
-fn library(map: &SourceMap, sources: &Sources, names: &mut Names) -> Vec<File> {
+pub(crate) fn library(map: &SourceMap, files: &[FileId], names: &mut Names) -> Vec<File> {
     let mut found = Diagnostics::new();
-    let files = sources.library().iter();
+    let files = files.iter();
     let parse = |file: &FileId| {
         parse_file(
             *file,
@@ -263,7 +272,8 @@ pub fn compile_with_tick(
     Some(Compiled { module, tick_ns })
 }
 
-fn lowered(
+/// The module of a program, with the image after prescan.
+pub(crate) fn lowered(
     program: &hir::Program,
     options: &FrontOptions,
     diagnostics: &mut Diagnostics,

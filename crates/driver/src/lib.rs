@@ -11,6 +11,7 @@ mod engine;
 mod evaluate;
 mod explain;
 mod front;
+mod kept;
 mod levels;
 mod output;
 mod parallel;
@@ -31,10 +32,12 @@ pub use front::{
     Compiled, FrontOptions, TimerBase, check, check_options, compile, compile_with_tick,
 };
 pub use iecc_grammar::st::Dialect;
+
 pub use iecc_jit::Cpu;
 pub use iecc_lower::OnFault;
 pub use iecc_sema::logix::{Edits, Init};
 pub use iecc_sema::st::testing::Tests;
+pub use kept::KeptLibrary;
 pub use levels::{Level, Levels};
 pub use output::{write_artifacts, write_file};
 pub use parallel::parallel_map;

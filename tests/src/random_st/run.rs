@@ -6,11 +6,10 @@ use crate::differential::{Agreement, compare_engines, interpreter};
 use crate::rng::Rng;
 use crate::stimulus::random_stimulus;
 use iecc_diag::{Diagnostics, Severity, render_text};
-use iecc_driver::{FrontOptions, OnFault, Sources, compile};
+use iecc_driver::{FrontOptions, KeptLibrary, OnFault};
 use iecc_ir::{Module, Region, verify};
 use iecc_jit::Jit;
 use iecc_passes::{SOFTWARE, Settings, run_pipeline};
-use iecc_source::SourceMap;
 use iecc_target::{Engine, region_bytes};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -30,17 +29,17 @@ pub struct Outcome {
 ///
 /// # Errors
 /// What is wrong, with a program that was shrunk.
-pub fn check_seed(seed: u64, options: Options) -> Result<Outcome, String> {
+pub fn check_seed(library: &KeptLibrary, seed: u64, options: Options) -> Result<Outcome, String> {
     let draft = random_program(seed, options);
     let policy = policy(seed);
-    check(draft.text(), policy, seed).map_err(|what| {
+    check(library, draft.text(), policy, seed).map_err(|what| {
         let kind = kind_of(&what);
         let fails = |text: &str| {
-            let again = check(text, policy, seed);
+            let again = check(library, text, policy, seed);
             again.is_err_and(|what| kind_of(&what) == kind)
         };
         let least = draft.shrink(fails);
-        let what = check(&least, policy, seed).expect_err("it failed while shrinking");
+        let what = check(library, &least, policy, seed).expect_err("it failed while shrinking");
         format!("seed {seed}, {policy:?}: {what}\n{least}")
     })
 }
@@ -63,9 +62,14 @@ fn kind_of(what: &str) -> &str {
 ///
 /// # Errors
 /// What is wrong: it was refused, the compiler panicked, or engines differ.
-pub fn check(text: &str, policy: OnFault, seed: u64) -> Result<Outcome, String> {
+pub fn check(
+    library: &KeptLibrary,
+    text: &str,
+    policy: OnFault,
+    seed: u64,
+) -> Result<Outcome, String> {
     let checked = catch_unwind(AssertUnwindSafe(|| {
-        let module = module(text, policy)?;
+        let module = module(library, text, policy)?;
         compare(&module, seed)
     }));
     checked.unwrap_or_else(|panic| {
@@ -75,19 +79,17 @@ pub fn check(text: &str, policy: OnFault, seed: u64) -> Result<Outcome, String> 
     })
 }
 
-fn module(text: &str, policy: OnFault) -> Result<Module, String> {
-    let (mut map, mut found) = (SourceMap::new(), Diagnostics::new());
-    let file = map.add("random.st", text);
-    let sources = Sources::text(&mut map, vec![file]);
+fn module(library: &KeptLibrary, text: &str, policy: OnFault) -> Result<Module, String> {
     let options = FrontOptions {
         on_fault: policy,
         ..FrontOptions::default()
     };
-    compile(&map, &sources, &options, &mut found).ok_or_else(|| {
-        let errors = found.iter().filter(|said| said.severity == Severity::Error);
-        let first =
-            errors.map(|said| format!("{:?} {}", said.code, render_text(&map, said, false)));
-        first.take(1).collect()
+    let mut found = Diagnostics::new();
+    library.compile(text, &options, &mut found).ok_or_else(|| {
+        let map = library.map(text);
+        let mut errors = found.iter().filter(|said| said.severity == Severity::Error);
+        let first = errors.next().expect("it was refused for a reason");
+        format!("{:?} {}", first.code, render_text(&map, first, false))
     })
 }
 
