@@ -64,7 +64,8 @@ fn change(words: &mut Vec<String>, others: &[String], rng: &mut Rng) {
             words.splice(at..at, others[first..last].to_vec());
         }
         6 if rng.one_in(4) => words.insert(at, nest(rng)),
-        _ => words.truncate(at),
+        7 if rng.one_in(4) => words.truncate(at),
+        _ => drop(words.drain(at..end.min(at + 1))),
     }
 }
 
