@@ -93,6 +93,7 @@ codes! {
     E0032 Error "name is missing";
     E0033 Error "declaration stands outside of a section";
     E0034 Error "underline is misplaced in a name";
+    E0035 Warning "comment stands in a comment";
     // 1 names
     E1001 Error "tag does not exist";
     E1002 Error "member does not exist";
@@ -191,6 +192,7 @@ codes! {
     E3054 Warning "reals are compared for equality";
     E3055 Warning "instance is never called";
     E3056 Warning "variable is read before it is assigned";
+    E3057 Warning "instance is copied";
     // 5 ladder and L5X
     E5001 Error "XML is malformed";
     E5002 Error "file is not an L5X export";

@@ -233,6 +233,17 @@ impl Feeder<'_, '_> {
 
     fn bad_number(&mut self, token: Token) {
         let text = self.tokens.slice(token);
+        if text.ends_with('.') {
+            let span = self.span(token.start, token.end);
+            let mended = format!("{text}0");
+            let message = format!("`{text}` has no digits behind its decimal point");
+            let diagnostic = Diagnostic::new(Code::E0019, span, message)
+                .label(format!("expected `{mended}`"))
+                .note("a real number has digits on both sides of a decimal point")
+                .fix(format!("write `{mended}`"), span, mended);
+            self.diagnostics.push(diagnostic);
+            return;
+        }
         let message = format!("`{text}` is neither a number nor a name");
         let diagnostic = Diagnostic::new(Code::E0019, self.span(token.start, token.end), message)
             .note("names begin with a letter or an underline; numbers of another base are written like `16#1F`");

@@ -194,6 +194,10 @@ impl StLexer<'_, '_> {
             let start = self.raw.span().start;
             let kind = self.kind(raw);
             let (kind, symbol) = match kind {
+                Kind::Int if self.ends_with_point() => {
+                    self.raw.bump(1);
+                    (Kind::BadNumber, self.no_name)
+                }
                 Kind::Word => self.word(),
                 Kind::ForeignWord => (kind, self.names.intern(self.raw.slice())),
                 other => (other, self.no_name),
@@ -252,6 +256,16 @@ impl StLexer<'_, '_> {
             Raw::Greater => Kind::Greater,
             Raw::GreaterEqual => Kind::GreaterEqual,
         }
+    }
+
+    /// Whether a number ends with its decimal point: `1.`, but neither `1..2` nor the part `w.1`.
+    fn ends_with_point(&self) -> bool {
+        let mut rest = self.raw.remainder().bytes();
+        let point = rest.next() == Some(b'.');
+        let behind = rest.next();
+        let goes_on = |byte: u8| matches!(byte, b'.' | b'%' | b'_') || byte.is_ascii_alphanumeric();
+        let part = self.list.last().is_some_and(|last| last.kind == Kind::Dot);
+        point && !part && !behind.is_some_and(goes_on)
     }
 
     /// A word, keyword, type prefix, or literal that begins with a word.

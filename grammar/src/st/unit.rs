@@ -26,12 +26,35 @@ pub fn parse_file(
     let tokens = lex(file, text, dialect, names);
     let mut assembler = Assembler::new(&tokens);
     let mut found = Diagnostics::new();
+    if dialect == Dialect::IecEdition2 {
+        nested_comments(&tokens, &mut found);
+    }
     for fragment in &slice(&tokens) {
         assembler.take(fragment, &mut found);
     }
     let file = assembler.finish(&mut found);
     diagnostics.append(found);
     file
+}
+
+/// Comments in comments are of edition 3.
+fn nested_comments(tokens: &Tokens<'_>, found: &mut Diagnostics) {
+    for &token in tokens
+        .list
+        .iter()
+        .filter(|token| token.kind == Kind::Comment)
+    {
+        let text = tokens.slice(token);
+        let Some(at) = text.get(2..).filter(|_| text.starts_with("(*")) else {
+            continue;
+        };
+        if let Some(at) = at.find("(*") {
+            let start = token.start + 2 + at as u32;
+            let span = Span::new(tokens.file, start, start + 2);
+            let message = "edition 2 has no comments in comments";
+            found.push(Diagnostic::new(Code::E0035, span, message));
+        }
+    }
 }
 
 /// Parses one fragment. Its scope is that of the file; whoever knows better changes it.

@@ -94,7 +94,14 @@ impl Dump<'_> {
             ExprKind::Deref(base) => format!("(^ {})", self.expr(base)),
             ExprKind::Direct(direct) => {
                 let fields = direct.fields.map(|fields| self.arena[fields].to_vec());
-                format!("(direct {:?} {:?} {fields:?})", direct.area, direct.size)
+                let of = direct
+                    .resource
+                    .map(|name| format!(" of {}", self.name(name)));
+                let of = of.unwrap_or_default();
+                format!(
+                    "(direct {:?} {:?} {fields:?}{of})",
+                    direct.area, direct.size
+                )
             }
             ExprKind::This => "THIS".to_owned(),
             ExprKind::Super => "SUPER".to_owned(),

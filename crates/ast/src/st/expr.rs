@@ -155,6 +155,8 @@ pub struct Part {
 /// A direct address. `%IX1.7` has the fields 1 and 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Direct {
+    /// The resource in front, in the access paths of a configuration.
+    pub resource: Option<Symbol>,
     /// I, Q or M; none for a place in the structure around it, as `%X3.0`.
     pub area: Option<Area>,
     /// The letter behind it; none means a bit.

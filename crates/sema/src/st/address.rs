@@ -125,6 +125,14 @@ impl Analysis<'_> {
         let ExprKind::Direct(direct) = written.kind else {
             return None;
         };
+        if let Some(resource) = direct.resource
+            && !self.outer_names(unit).contains(&resource)
+        {
+            let span = self.span(unit, written.range);
+            let message = format!("no resource is named `{}`", self.text(resource));
+            self.error(Code::E1012, span, message);
+            return None;
+        }
         match self.read_address(unit, direct) {
             Ok(address) => address,
             Err((code, message)) => {

@@ -88,6 +88,7 @@ impl Analysis<'_> {
     ) -> Result<Option<(u64, u64)>, ()> {
         let written = self.unit(scope.unit).arena[location];
         let ExprKind::Direct(Direct {
+            resource: _,
             area: None,
             size,
             fields: Some(fields),

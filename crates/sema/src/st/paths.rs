@@ -102,7 +102,8 @@ impl Analysis<'_> {
         None
     }
 
-    fn outer_names(&self, unit: UnitId) -> Vec<Symbol> {
+    /// The names of a configuration and of its resources.
+    pub(crate) fn outer_names(&self, unit: UnitId) -> Vec<Symbol> {
         let unit = self.unit(unit);
         let st::UnitKind::Configuration(configuration) = &unit.kind else {
             return Vec::new();

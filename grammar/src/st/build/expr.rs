@@ -9,6 +9,9 @@ use iecc_ast::st::{
 use iecc_diag::{Code, Diagnostic};
 use iecc_source::TextRange;
 
+/// Letters of the word `NOT`.
+const NOT_LENGTH: u32 = 3;
+
 impl Build<'_, '_> {
     /// A node without children.
     pub(crate) fn expr(&mut self, start: u32, kind: ExprKind, end: u32) -> Id<Expr> {
@@ -125,6 +128,35 @@ impl Build<'_, '_> {
         self.node(ExprKind::Unary { op, operand }, range, depth)
     }
 
+    /// `NOT operand`; with named arguments in the parentheses it is a call.
+    pub(crate) fn not(&mut self, start: u32, name: Symbol, operand: Id<Expr>) -> Id<Expr> {
+        let ExprKind::StructValue(fields) = self.arena[operand].kind else {
+            return self.unary(start, UnaryOp::Not, operand);
+        };
+        let callee = self.expr(start, ExprKind::Name(name), start + NOT_LENGTH);
+        let depth = self.depth_above(operand);
+        let range = self.expr_range(callee).to(self.expr_range(operand));
+        let call = ExprKind::Call {
+            callee,
+            arguments: fields,
+        };
+        self.node(call, range, depth)
+    }
+
+    /// `NOT(IN := a, ENO => b)`.
+    pub(crate) fn not_call(
+        &mut self,
+        start: u32,
+        name: Symbol,
+        mut arguments: Vec<Argument>,
+        outputs: Vec<Argument>,
+        end: u32,
+    ) -> Id<Expr> {
+        arguments.extend(outputs);
+        let callee = self.expr(start, ExprKind::Name(name), start + NOT_LENGTH);
+        self.call(callee, arguments, end)
+    }
+
     pub(crate) fn parenthesised(&mut self, start: u32, inner: Id<Expr>, end: u32) -> Id<Expr> {
         let range = self.range(start, end);
         let node = &mut self.arena[inner];
@@ -232,9 +264,18 @@ impl Build<'_, '_> {
         self.node(ExprKind::Typed { ty, value }, range, depth)
     }
 
-    /// `base.3` and `base.%X3`.
+    /// `base.3` and `base.%X3`; also `resource.%IX0.3`.
     pub(crate) fn part(&mut self, base: Id<Expr>, start: u32, end: u32) -> Id<Expr> {
         let text = self.text(start, end);
+        if let (ExprKind::Name(resource), Some(mut direct)) =
+            (self.arena[base].kind, self.direct_parts(text))
+            && direct.area.is_some()
+        {
+            direct.resource = Some(resource);
+            let range = self.expr_range(base).to(self.range(end, end));
+            let depth = self.depth_above(base);
+            return self.node(ExprKind::Direct(direct), range, depth);
+        }
         let Some(part) = part(text) else {
             let message = format!("`{text}` is no part of a bit string");
             let diagnostic = Diagnostic::new(Code::E0026, self.span(start, end), message)
@@ -250,17 +291,24 @@ impl Build<'_, '_> {
     /// `%IX1.0`, `%Q*`.
     pub(crate) fn direct(&mut self, start: u32, end: u32) -> Id<Expr> {
         let text = self.text(start, end);
-        let kind = match direct(text) {
-            Some((area, size, numbers)) => {
-                let fields = numbers.map(|numbers| self.arena.list(numbers));
-                ExprKind::Direct(Direct { area, size, fields })
-            }
+        let kind = match self.direct_parts(text) {
+            Some(direct) => ExprKind::Direct(direct),
             None => {
                 self.bad_address(text, start, end);
                 ExprKind::Error
             }
         };
         self.expr(start, kind, end)
+    }
+
+    fn direct_parts(&mut self, text: &str) -> Option<Direct> {
+        let (area, size, numbers) = direct(text)?;
+        Some(Direct {
+            resource: None,
+            area,
+            size,
+            fields: numbers.map(|numbers| self.arena.list(numbers)),
+        })
     }
 
     fn bad_address(&mut self, text: &str, start: u32, end: u32) {

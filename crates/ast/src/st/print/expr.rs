@@ -89,6 +89,10 @@ impl Printer<'_> {
     }
 
     fn direct(&mut self, direct: Direct) {
+        if let Some(resource) = direct.resource {
+            self.name(resource);
+            self.write(".");
+        }
         self.write("%");
         if let Some(area) = direct.area {
             self.format(format_args!("{}", area.letter()));

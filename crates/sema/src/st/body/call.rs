@@ -131,6 +131,12 @@ impl Body<'_, '_> {
             if operand.is_error() {
                 return;
             }
+            if let TypeKind::Instance(_) = self.an.types.base(operand.ty) {
+                let name = self.type_name(operand.ty);
+                let message = format!("an instance of {name} is called with parentheses");
+                self.error(Message::E3004, written.range, message);
+                return;
+            }
             let message = "this does nothing; a call has parentheses";
             self.error(Message::E3012, written.range, message);
             return;

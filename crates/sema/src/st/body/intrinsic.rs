@@ -155,13 +155,25 @@ impl Body<'_, '_> {
 
     /// `GT(a, b, c)`: every operand is compared with the next.
     fn chain(&mut self, op: BinaryOp, operands: Vec<Operand>, range: TextRange) -> Operand {
+        self.chained(operands, range, &|body, left, right| {
+            body.binary_on(op, left, right, range, None)
+        })
+    }
+
+    /// Whether each of some operands compares with the next one.
+    pub(super) fn chained(
+        &mut self,
+        operands: Vec<Operand>,
+        range: TextRange,
+        compare: &dyn Fn(&mut Self, Operand, Operand) -> Operand,
+    ) -> Operand {
         let held: Vec<Operand> = operands
             .into_iter()
             .map(|operand| self.hold(operand))
             .collect();
         let mut result: Option<Operand> = None;
         for pair in held.windows(2) {
-            let next = self.binary_on(op, pair[0].clone(), pair[1].clone(), range, None);
+            let next = compare(self, pair[0].clone(), pair[1].clone());
             result = Some(match result {
                 None => next,
                 Some(before) => self.binary_on(BinaryOp::And, before, next, range, None),

@@ -31,6 +31,9 @@ impl Body<'_, '_> {
         if self.unknown_parameter(functions, &given) {
             return Operand::error(range);
         }
+        if self.missing_argument(functions[0], &given, range) {
+            return Operand::error(range);
+        }
         let name = self.text(self.an.pou(functions[0]).name);
         let types: Vec<String> = given
             .operands
@@ -57,6 +60,30 @@ impl Body<'_, '_> {
         let unknown = named.into_iter().find(|name| !known.contains(&name.name));
         let Some(name) = unknown else { return false };
         self.no_parameter(functions[0], name, known);
+        true
+    }
+
+    /// Reports inputs without an argument, where what is given does not say what is meant.
+    fn missing_argument(&mut self, function: PouId, given: &Given, range: TextRange) -> bool {
+        let parameters = self.an.library_parameters(function);
+        let positional = |(kind, _): &&(ArgumentKind, Operand)| *kind == ArgumentKind::Positional;
+        let by_position = given.operands.iter().filter(positional).count();
+        let is_given = |name| {
+            let mut kinds = given.operands.iter().map(|(kind, _)| kind);
+            kinds.any(|kind| matches!(kind, ArgumentKind::Input(given) if given.name == name))
+        };
+        let missing: Vec<&str> = parameters
+            .iter()
+            .skip(by_position)
+            .filter(|parameter| !parameter.output && !is_given(parameter.name))
+            .map(|parameter| self.text(parameter.name))
+            .collect();
+        if missing.is_empty() {
+            return false;
+        }
+        let name = self.text(self.an.pou(function).name);
+        let message = format!("`{name}` has no argument for `{}`", missing.join("`, `"));
+        self.error(Message::E3022, range, message);
         true
     }
 
@@ -141,7 +168,12 @@ impl Body<'_, '_> {
         if by_position && given.outputs.is_empty() && operands.len() < parameters.len() {
             return None;
         }
-        for parameter in &parameters {
+        for (position, parameter) in parameters.iter().enumerate() {
+            // An argument says how long a string is.
+            let open = matches!(parameter.ty, ParameterType::OpenText { .. });
+            if open && !parameter.output && !bound.positions.contains(&position) {
+                return None;
+            }
             if let ParameterType::Generic(name, class) = parameter.ty {
                 let ty = generics.iter().find(|(known, _)| *known == name);
                 let ty = ty.and_then(|(_, ty)| *ty);
@@ -317,7 +349,8 @@ impl Body<'_, '_> {
         typed.collect()
     }
 
-    /// An extensible function with more than two arguments: from the left, two at a time.
+    /// An extensible function with more than two arguments: from the left, two at a time; a
+    /// comparison of each with the next one.
     fn folded_call(
         &mut self,
         function: PouId,
@@ -326,6 +359,11 @@ impl Body<'_, '_> {
         want: Option<TypeId>,
     ) -> Operand {
         let mut operands = operands.into_iter().map(|(_, operand)| operand);
+        if self.an.pragma(function, "chain") {
+            return self.chained(operands.collect(), range, &|body, left, right| {
+                body.library(&[function], Given::positional([left, right]), range, want)
+            });
+        }
         let first = operands
             .next()
             .expect("extensible functions have arguments");

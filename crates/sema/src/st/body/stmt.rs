@@ -256,6 +256,13 @@ impl Body<'_, '_> {
             return;
         };
         self.store(&to, place.ty, &value, range);
+        if let (TypeKind::Instance(pou), false) = (self.an.types.base(place.ty), value.is_error()) {
+            let (name, span) = (self.text(self.an.pou(*pou).name), self.span(range));
+            let message = format!("this copies all that an instance of {name} holds");
+            let note = "its inputs, outputs and what it remembers, times and edges too";
+            let warning = Diagnostic::new(Message::E3057, span, message);
+            self.an.warn(warning.note(note));
+        }
     }
 
     fn special_assign(
