@@ -263,6 +263,7 @@ codes! {
     E6042 Error "task does not exist";
     E6043 Error "connection of the configuration does not fit";
     E6044 Error "variable has no address";
+    E6045 Error "configuration is not the only one";
     // 7 target cannot express this
     E7001 Error "target cannot express a loop";
     E7002 Error "target cannot express a division";

@@ -1,7 +1,8 @@
 //! Direct addresses: `%IX0.3`, `%QW4`, `%MD5`.
 //!
 //! Addresses count units of their own size, the lowest byte first. An address that nothing else
-//! overlaps is a tag of its own. Where several overlap, their bytes are one array of bytes.
+//! overlaps is a tag of its own. Where several overlap, and one structure or array holds all others in
+//! its elements, that is the tag; else their bytes are one array of bytes.
 
 use super::analysis::Analysis;
 use super::elementary::El;
@@ -319,7 +320,7 @@ impl Analysis<'_> {
     }
 
     /// How many bits a type takes at an address.
-    fn width(&self, ty: Type) -> u64 {
+    pub(crate) fn width(&self, ty: Type) -> u64 {
         match ty {
             Type::Elementary(Elementary::Bool) => 1,
             Type::Elementary(of) => u64::from(of.bits()),
@@ -353,10 +354,63 @@ impl Analysis<'_> {
                 bits: width,
             };
             self.plain_cluster(address, first, end)
+        } else if let Some(whole) = self.whole_of(uses, first.first, end) {
+            let address = Address {
+                area: area_of,
+                first: whole.first,
+                bits: 8,
+            };
+            let cluster = self.plain_cluster(address, whole, end);
+            self.name_parts(area_of, &cluster, uses);
+            cluster
         } else {
             self.byte_cluster(area_of, first.first, end)
         };
         self.addresses.areas.entry(area).or_default().push(cluster);
+    }
+
+    /// The structure or array that all other uses are elements of, or lie in an element of.
+    fn whole_of(&self, uses: &[Use], first: u64, end: u64) -> Option<Use> {
+        let covers = |one: &&Use| (one.first, one.first + one.bits) == (first, end);
+        let is_whole = |one: &&Use| matches!(one.class, Class::Whole(_));
+        let whole = uses.iter().filter(covers).find(is_whole)?;
+        let fits = |one: &Use| match one.class {
+            Class::Whole(_) => one.class == whole.class && one.first == whole.first,
+            Class::Bool | Class::Int | Class::Real => {
+                let real = one.class == Class::Real;
+                let part = self.part_of(whole.ty, one.first - first, one.bits, real);
+                part.is_some()
+            }
+        };
+        uses.iter().all(fits).then_some(*whole)
+    }
+
+    /// Addresses in a structure or array name their elements and bits.
+    fn name_parts(&mut self, area: Area, cluster: &Cluster, uses: &[Use]) {
+        let Some(Class::Whole(ty)) = cluster.plain else {
+            return;
+        };
+        let mut named = HashSet::new();
+        for one in uses {
+            let address = Address {
+                area,
+                first: one.first,
+                bits: one.bits,
+            };
+            let (offset, real) = (one.first - cluster.first, one.class == Class::Real);
+            let part = match one.class {
+                Class::Whole(_) => None,
+                Class::Bool | Class::Int | Class::Real => self.part_of(ty, offset, one.bits, real),
+            };
+            let spot = part.map(|steps| Spot {
+                tag: cluster.tag,
+                steps,
+            });
+            let place = spot.and_then(|spot| super::paths::place_of(&spot));
+            if let Some(place) = place.filter(|_| named.insert(address.text())) {
+                self.hir.names.push((address.text(), place));
+            }
+        }
     }
 
     fn plain_cluster(&mut self, address: Address, of: Use, end: u64) -> Cluster {
@@ -465,8 +519,15 @@ impl Analysis<'_> {
         let cluster = self.cluster_of(address)?;
         let tag = cluster.tag;
         if let Some(plain) = cluster.plain {
-            let steps = Vec::new();
-            return (plain == class).then_some(Spot { tag, steps });
+            let steps = match (plain, class) {
+                (Class::Whole(whole), Class::Bool | Class::Int | Class::Real) => {
+                    let (offset, bits) = (address.first - cluster.first, self.width(storage));
+                    self.part_of(whole, offset, bits, class == Class::Real)?
+                }
+                _ if plain == class => Vec::new(),
+                _ => return None,
+            };
+            return Some(Spot { tag, steps });
         }
         let (byte, bit) = (
             ((address.first - cluster.first) / 8) as u32,
@@ -498,14 +559,27 @@ impl Analysis<'_> {
             return;
         };
         let (tag, start) = (cluster.tag, cluster.first);
-        if cluster.plain.is_some() {
-            self.hir.tags[tag.index()].init = Some(init);
-            return;
+        match (cluster.plain, self.hir.inits.get(init)) {
+            (Some(Class::Whole(whole)), hir::code::Init::Bits(bits)) => {
+                let bits = *bits;
+                let part = [false, true].into_iter().find_map(|real| {
+                    self.part_of(whole, address.first - start, address.bits, real)
+                });
+                let spot = part.map(|steps| Spot { tag, steps });
+                match spot.and_then(|spot| super::paths::place_of(&spot)) {
+                    Some(place) => self.hir.tags[tag.index()].initial.push((place.path, bits)),
+                    None => self.no_initial(span),
+                }
+                return;
+            }
+            (Some(_), _) => {
+                self.hir.tags[tag.index()].init = Some(init);
+                return;
+            }
+            (None, _) => {}
         }
         let hir::code::Init::Bits(bits) = *self.hir.inits.get(init) else {
-            let message = "this initial value at addresses that overlap is not compiled yet";
-            self.error(Code::E2010, span, message);
-            return;
+            return self.no_initial(span);
         };
         let byte = ((address.first - start) / 8) as u32;
         let initial = &mut self.hir.tags[tag.index()].initial;
@@ -518,6 +592,11 @@ impl Analysis<'_> {
             let value = (bits >> (8 * index)) & 0xFF;
             initial.push((vec![Step::Index(byte + index)], value));
         }
+    }
+
+    fn no_initial(&mut self, span: Span) {
+        let message = "this initial value at addresses that overlap is not compiled yet";
+        self.error(Code::E2010, span, message);
     }
 
     /// Checks that a type fits an address.

@@ -252,6 +252,13 @@ impl<'a> Analysis<'a> {
         id
     }
 
+    /// Takes back what was wanted from a number of bodies on. Nothing that stays may call it.
+    pub(crate) fn drop_wanted(&mut self, mark: usize) {
+        for dropped in self.wanted.drain(mark..) {
+            self.hir_ids.remove(&dropped);
+        }
+    }
+
     /// A variable or global by its id.
     pub(crate) fn global(&self, id: GlobalId) -> &Global {
         &self.globals[id.index()]

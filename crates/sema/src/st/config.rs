@@ -353,8 +353,13 @@ impl Analysis<'_> {
                 self.error(Message::E6043, span, message);
                 continue;
             }
-            if !self.call_shape(block).refs.is_empty() {
-                self.unsupported(unit, written.range, "a task for a block with in-outs");
+            let in_out = self.call_shape(block).refs.first().copied();
+            if let Some(in_out) = in_out {
+                let in_out = self.text(self.pou(block).vars[in_out].name);
+                let text = self.text(name);
+                let message =
+                    format!("a task calls `{text}`, so in-out `{in_out}` has no argument");
+                self.error(Message::E3016, span, message);
                 continue;
             }
             let name = format!("{}.{}", self.text(program.name.name), self.text(name));

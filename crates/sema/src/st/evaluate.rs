@@ -107,9 +107,7 @@ impl Analysis<'_> {
         let names = std::mem::take(&mut self.unit_names);
         let pous = self.closed(code, span);
         self.unit_names = names;
-        for forgotten in self.wanted.drain(mark..) {
-            self.hir_ids.remove(&forgotten);
-        }
+        self.drop_wanted(mark);
         let mut program = hir::Program {
             types: std::mem::take(&mut self.hir.types),
             inits: std::mem::take(&mut self.hir.inits),

@@ -19,6 +19,7 @@
 )]
 
 mod address;
+mod address_part;
 mod analysis;
 mod body;
 mod config;
@@ -52,6 +53,7 @@ mod storage;
 mod suitable;
 pub mod testing;
 pub mod types;
+mod uncalled;
 
 pub use constant::Const;
 pub use elementary::{El, Family};
@@ -299,6 +301,7 @@ impl<'a> Analysis<'a> {
             self.hir.pous.push(made);
             next += 1;
         }
+        self.check_uncalled();
         self.lint();
         self.show_results();
         let suite = self.suite();

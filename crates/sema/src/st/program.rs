@@ -5,8 +5,9 @@ use super::signature::{PouId, Storage, UnitId};
 use super::types::{TypeId, TypeKind};
 use crate::hir::code::Code;
 use crate::hir::{self, Body, IoPoint, Place, Step, TagId, Task, Trigger, Type};
-use iecc_ast::st::{PouKind, SectionKind, UnitKind};
+use iecc_ast::st::{self, PouKind, SectionKind, UnitKind};
 use iecc_diag::{Code as Message, Diagnostic, closest};
+use iecc_source::Span;
 
 impl Analysis<'_> {
     /// Makes the tasks and instances; a message if there is nothing to run.
@@ -18,8 +19,11 @@ impl Analysis<'_> {
         });
         let first = configurations.next();
         let others: Vec<_> = configurations.collect();
-        for (unit, other) in others {
-            self.unsupported(unit, other.name.range, "a second CONFIGURATION");
+        if let Some((unit, first)) = first {
+            let first = self.span(unit, first.name.range);
+            for (unit, other) in others {
+                self.second_configuration(unit, other, first);
+            }
         }
         match first {
             Some((unit, configuration)) => {
@@ -28,6 +32,17 @@ impl Analysis<'_> {
             }
             None => self.single_program(),
         }
+    }
+
+    /// A program is what one controller runs.
+    fn second_configuration(&mut self, unit: UnitId, other: &st::Configuration, first: Span) {
+        let name = self.text(other.name.name);
+        let message = format!("`{name}` is a second configuration; a program has one");
+        let span = self.span(unit, other.name.range);
+        let diagnostic = Diagnostic::new(Message::E6045, span, message);
+        let note =
+            "each is compiled with the files that it needs, see `sources` in the project file";
+        self.report(diagnostic.also(first, "the first one").note(note));
     }
 
     /// Where a configuration says what runs, nobody else does.

@@ -687,7 +687,7 @@ impl crate::st::analysis::Analysis<'_> {
     }
 
     /// A library function with its generic names bound.
-    pub(super) fn instance(&mut self, function: PouId, bindings: Bindings) -> PouId {
+    pub(crate) fn instance(&mut self, function: PouId, bindings: Bindings) -> PouId {
         if bindings == Bindings::default() {
             self.complete(function);
             return function;
