@@ -108,6 +108,6 @@ fn malformed_numbers_are_told_once_each() {
         "DT#2024-02-30-12:00:00",
     );
     one("x := %E3;", Code::E0026, "%E3");
-    one("x := w.%Q3;", Code::E0026, "%Q3");
+    one("x := w.%K3;", Code::E0026, "%K3");
     one("x := BOOL#-TRUE;", Code::E0019, "-TRUE");
 }

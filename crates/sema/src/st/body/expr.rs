@@ -10,10 +10,15 @@ impl Body<'_, '_> {
     /// Looks at an expression. `want` is the type that its use needs, which literals take; the
     /// result may still be of another type. Where only constants are allowed, it is one.
     pub(crate) fn expr(&mut self, id: st::Id<st::Expr>, want: Option<TypeId>) -> Operand {
-        let operand = self.any_expr(id, want);
-        if self.constant_only {
-            return self.known(operand);
+        if !self.constant_only {
+            return self.any_expr(id, want);
         }
+        // The code of this expression alone is run.
+        let code = std::mem::take(&mut self.code);
+        let pending = std::mem::take(&mut self.pending);
+        let operand = self.any_expr(id, want);
+        let operand = self.known(operand);
+        (self.code, self.pending) = (code, pending);
         operand
     }
 

@@ -1,5 +1,6 @@
 //! Operations that the library names and the compiler knows.
 
+use super::compare::comparison;
 use super::{Body, Operand, OperandKind};
 use crate::hir::CompareOp;
 use crate::hir::code::{
@@ -25,7 +26,7 @@ impl Body<'_, '_> {
         want: Option<TypeId>,
     ) -> Operand {
         if let Some(op) = binary_intrinsic(name) {
-            if binary_is_comparison(op) && operands.len() > 2 {
+            if comparison(op).is_some() && operands.len() > 2 {
                 return self.chain(op, operands, range);
             }
             if operands.len() < 2 {
@@ -460,8 +461,4 @@ fn binary_intrinsic(name: &str) -> Option<BinaryOp> {
         "ge" => BinaryOp::GreaterEqual,
         _ => return None,
     })
-}
-
-fn binary_is_comparison(op: BinaryOp) -> bool {
-    op.binding() == BinaryOp::Equal.binding() || op.binding() == BinaryOp::Less.binding()
 }

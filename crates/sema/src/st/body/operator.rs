@@ -1,9 +1,9 @@
 //! Operators: which types they take, what type comes out, and what they are for constants.
 
+use super::compare::comparison;
 use super::{Body, Operand, OperandKind};
-use crate::hir::CompareOp;
 use crate::hir::code::{BinaryOp as Op, Conversion, ExprId, ExprKind, UnaryOp as Unary};
-use crate::st::constant::{Const, round_to};
+use crate::st::constant::Const;
 use crate::st::elementary::{El, Family};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::st::{self, BinaryOp, UnaryOp};
@@ -64,10 +64,12 @@ impl Body<'_, '_> {
         let el = self.an.types.elementary(operand.ty);
         if let Some(value) = operand.as_const() {
             let value = match value {
-                Const::Int(number) => Const::Int(-number),
+                Const::Int(number) => {
+                    return self.folded_int(number.checked_neg(), operand.ty, range);
+                }
                 Const::Real(number) => Const::Real(-number),
                 Const::Literal(single, double) => Const::Literal(-single, -double),
-                other => other.clone(),
+                Const::Text(_) | Const::Null => value.clone(),
             };
             return self.folded(value, operand.ty, range);
         }
@@ -133,7 +135,7 @@ impl Body<'_, '_> {
         want: Option<TypeId>,
     ) -> Operand {
         // What a comparison is used for says nothing about its operands.
-        let inner = if is_comparison(op) { None } else { want };
+        let inner = want.filter(|_| comparison(op).is_none());
         if matches!(op, BinaryOp::AndThen | BinaryOp::OrElse) {
             return self.short_circuit(op, left, right, range);
         }
@@ -152,26 +154,14 @@ impl Body<'_, '_> {
         want: Option<TypeId>,
     ) -> Operand {
         if left.is_error() || right.is_error() {
-            return if is_comparison(op) {
-                Operand {
-                    ty: TypeId::ERROR,
-                    ..Operand::error(range)
-                }
-            } else {
-                Operand::error(range)
-            };
+            return Operand::error(range);
+        }
+        if let Some(compared) = comparison(op) {
+            let (left, right) = self.numbers_as_durations(left, right);
+            let (left, right) = self.zero_as_null(left, right);
+            return self.compare(op, compared, left, right, range);
         }
         match op {
-            BinaryOp::Equal
-            | BinaryOp::NotEqual
-            | BinaryOp::Less
-            | BinaryOp::LessEqual
-            | BinaryOp::Greater
-            | BinaryOp::GreaterEqual => {
-                let (left, right) = self.numbers_as_durations(left, right);
-                let (left, right) = self.zero_as_null(left, right);
-                self.compare(op, left, right, range)
-            }
             BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
                 self.bitwise(op, left, right, range, want)
             }
@@ -181,7 +171,14 @@ impl Body<'_, '_> {
             | BinaryOp::Divide
             | BinaryOp::Modulo => self.arithmetic(op, left, right, range, want),
             BinaryOp::Power => self.power(left, right, range, want),
-            BinaryOp::AndThen | BinaryOp::OrElse => unreachable!("handled before"),
+            BinaryOp::Equal
+            | BinaryOp::NotEqual
+            | BinaryOp::Less
+            | BinaryOp::LessEqual
+            | BinaryOp::Greater
+            | BinaryOp::GreaterEqual
+            | BinaryOp::AndThen
+            | BinaryOp::OrElse => unreachable!("handled before"),
         }
     }
 
@@ -405,155 +402,6 @@ impl Body<'_, '_> {
         el.map_or(typed.ty, TypeId::of)
     }
 
-    fn fold_arithmetic(
-        &mut self,
-        op: BinaryOp,
-        left: &Operand,
-        right: &Operand,
-        ty: TypeId,
-        range: TextRange,
-    ) -> Operand {
-        let real =
-            ty == TypeId::UNTYPED_REAL || self.an.types.elementary(ty).is_some_and(El::is_real);
-        let operands = if matches!(ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL) {
-            left.as_const().cloned().zip(right.as_const().cloned())
-        } else {
-            self.constant_to(left, ty).zip(self.constant_to(right, ty))
-        };
-        let Some((a, b)) = operands else {
-            return Operand::error(range);
-        };
-        let value = if real {
-            let el = self.an.types.elementary(ty).unwrap_or(El::Lreal);
-            Some(Const::Real(round_to(
-                el,
-                fold_real(op, as_real(&a), as_real(&b)),
-            )))
-        } else {
-            match (a, b) {
-                (Const::Int(_), Const::Int(0)) if op == BinaryOp::Divide => {
-                    return self.error(Message::E2028, right.range, "division by zero");
-                }
-                (Const::Int(a), Const::Int(b)) => fold_int(op, a, b).map(Const::Int),
-                _ => None,
-            }
-        };
-        match value {
-            Some(value) => self.folded(value, ty, range),
-            None => self.error(Message::E2005, range, "the result does not fit 128 bits"),
-        }
-    }
-
-    /// A folded constant, which must fit its type.
-    pub(super) fn folded(&mut self, value: Const, ty: TypeId, range: TextRange) -> Operand {
-        if let (Const::Int(number), Some(el)) = (&value, self.an.types.elementary(ty))
-            && !el.is_real()
-        {
-            let (low, high) = el.range();
-            if !(low..=high).contains(number) {
-                let message = format!(
-                    "the result {number} does not fit {} ({low} to {high})",
-                    el.name()
-                );
-                return self.error(Message::E2005, range, message);
-            }
-            return Operand::constant(value, TypeId::of(el), range);
-        }
-        Operand::constant(value, ty, range)
-    }
-
-    fn compare(
-        &mut self,
-        op: BinaryOp,
-        left: Operand,
-        right: Operand,
-        range: TextRange,
-    ) -> Operand {
-        let hir_op = match op {
-            BinaryOp::Equal => CompareOp::Equal,
-            BinaryOp::NotEqual => CompareOp::NotEqual,
-            BinaryOp::Less => CompareOp::Less,
-            BinaryOp::LessEqual => CompareOp::LessEqual,
-            BinaryOp::Greater => CompareOp::Greater,
-            _ => CompareOp::GreaterEqual,
-        };
-        let Some(ty) = self.compared_type(op, &left, &right, range) else {
-            return Operand::error(range);
-        };
-        if let (Some(a), Some(b)) = (left.as_const(), right.as_const())
-            && let Some(value) = fold_compare(op, a, b)
-        {
-            return Operand::constant(Const::Int(i128::from(value)), TypeId::BOOL, range);
-        }
-        if let TypeKind::Text { .. } = self.an.types.base(ty) {
-            return self.compare_texts(hir_op, left, right, range);
-        }
-        let (left, right) = (self.as_scalar(&left, ty), self.as_scalar(&right, ty));
-        if self.an.types.elementary(ty).is_some_and(El::is_real) {
-            self.real_equality(hir_op, left, right, range);
-        }
-        let value = self.add_expr(
-            ExprKind::Compare(hir_op, left, right),
-            crate::hir::Elementary::Bool,
-            range,
-        );
-        Operand::value(value, TypeId::BOOL, range)
-    }
-
-    /// The type in which two operands are compared; a message if there is none.
-    fn compared_type(
-        &mut self,
-        op: BinaryOp,
-        left: &Operand,
-        right: &Operand,
-        range: TextRange,
-    ) -> Option<TypeId> {
-        let (a, b) = (self.an.types.strip(left.ty), self.an.types.strip(right.ty));
-        let equality = matches!(op, BinaryOp::Equal | BinaryOp::NotEqual);
-        let types = &self.an.types;
-        let found = match (types.kind(a), types.kind(b)) {
-            (TypeKind::Enum(x), TypeKind::Enum(y)) if x == y && equality => Some(a),
-            (TypeKind::Reference(..) | TypeKind::Interface(_), TypeKind::Null) if equality => {
-                Some(a)
-            }
-            (TypeKind::Null, TypeKind::Reference(..) | TypeKind::Interface(_)) if equality => {
-                Some(b)
-            }
-            (TypeKind::Reference(_, x), TypeKind::Reference(_, y))
-                if equality && (self.refers_alike(*x, *y) || self.refers_alike(*y, *x)) =>
-            {
-                Some(a)
-            }
-            (TypeKind::Interface(_), TypeKind::Interface(_)) if equality => Some(a),
-            (TypeKind::Text { wide: x, .. }, TypeKind::Text { wide: y, .. }) if x == y => Some(a),
-            (TypeKind::Text { length: 1, .. }, TypeKind::Elementary(El::Char | El::Wchar)) => {
-                left.as_const().is_some().then_some(b)
-            }
-            (TypeKind::Elementary(El::Char | El::Wchar), TypeKind::Text { length: 1, .. }) => {
-                right.as_const().is_some().then_some(a)
-            }
-            _ => self.compared_elementary(left, right),
-        };
-        if found.is_none() {
-            self.no_common_type(op, left, right, range);
-        }
-        found
-    }
-
-    fn compared_elementary(&self, left: &Operand, right: &Operand) -> Option<TypeId> {
-        let untyped = |ty| matches!(ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL);
-        let types = &self.an.types;
-        match (untyped(left.ty), untyped(right.ty)) {
-            (true, true) => Some(TypeId::UNTYPED_REAL),
-            (true, false) => types.elementary(right.ty).map(TypeId::of),
-            (false, true) => types.elementary(left.ty).map(TypeId::of),
-            (false, false) => {
-                let (a, b) = (types.elementary(left.ty)?, types.elementary(right.ty)?);
-                a.common(b).map(TypeId::of)
-            }
-        }
-    }
-
     /// A number by value in another storage.
     pub(super) fn convert_value(&mut self, value: ExprId, to: El, range: TextRange) -> ExprId {
         if self.code.expr(value).ty == to.storage() {
@@ -583,88 +431,9 @@ impl Body<'_, '_> {
         self.library_call("EXPT", vec![left, right], range, want)
     }
 
-    fn compare_texts(
-        &mut self,
-        op: CompareOp,
-        left: Operand,
-        right: Operand,
-        range: TextRange,
-    ) -> Operand {
-        let order = self.library_call("__COMPARE", vec![left, right], range, None);
-        if order.is_error() {
-            return order;
-        }
-        let value = self.raw(&order);
-        let storage = self.code.expr(value).ty;
-        let zero = self.add_const(0, storage, range);
-        let kind = ExprKind::Compare(op, value, zero);
-        let value = self.add_expr(kind, crate::hir::Elementary::Bool, range);
-        Operand::value(value, TypeId::BOOL, range)
-    }
-
     /// Whether an operand is a place of an instance.
     pub(super) fn is_instance(&self, operand: &Operand) -> bool {
         matches!(operand.kind, OperandKind::Place(_))
             && matches!(self.an.types.base(operand.ty), TypeKind::Instance(_))
     }
-}
-
-fn is_comparison(op: BinaryOp) -> bool {
-    matches!(
-        op,
-        BinaryOp::Equal
-            | BinaryOp::NotEqual
-            | BinaryOp::Less
-            | BinaryOp::LessEqual
-            | BinaryOp::Greater
-            | BinaryOp::GreaterEqual
-    )
-}
-
-fn as_real(value: &Const) -> f64 {
-    match value {
-        Const::Int(number) => *number as f64,
-        Const::Real(number) | Const::Literal(_, number) => *number,
-        Const::Text(_) | Const::Null => 0.0,
-    }
-}
-
-fn fold_real(op: BinaryOp, a: f64, b: f64) -> f64 {
-    match op {
-        BinaryOp::Add => a + b,
-        BinaryOp::Subtract => a - b,
-        BinaryOp::Multiply => a * b,
-        _ => a / b,
-    }
-}
-
-pub(super) fn fold_int(op: BinaryOp, a: i128, b: i128) -> Option<i128> {
-    match op {
-        BinaryOp::Add => a.checked_add(b),
-        BinaryOp::Subtract => a.checked_sub(b),
-        BinaryOp::Multiply => a.checked_mul(b),
-        BinaryOp::Divide => a.checked_div(b),
-        // MOD by 0 is 0 by definition.
-        _ if b == 0 => Some(0),
-        _ => a.checked_rem(b),
-    }
-}
-
-fn fold_compare(op: BinaryOp, a: &Const, b: &Const) -> Option<bool> {
-    use std::cmp::Ordering;
-    let order = match (a, b) {
-        (Const::Int(a), Const::Int(b)) => Some(a.cmp(b)),
-        (Const::Text(a), Const::Text(b)) => Some(a.cmp(b)),
-        (Const::Null, Const::Null) => Some(Ordering::Equal),
-        (Const::Text(_) | Const::Null, _) | (_, Const::Text(_) | Const::Null) => return None,
-        (a, b) => as_real(a).partial_cmp(&as_real(b)),
-    };
-    Some(match op {
-        BinaryOp::Equal => order == Some(Ordering::Equal),
-        BinaryOp::NotEqual => order != Some(Ordering::Equal),
-        BinaryOp::Less => order == Some(Ordering::Less),
-        BinaryOp::LessEqual => matches!(order, Some(Ordering::Less | Ordering::Equal)),
-        BinaryOp::Greater => order == Some(Ordering::Greater),
-        _ => matches!(order, Some(Ordering::Greater | Ordering::Equal)),
-    })
 }

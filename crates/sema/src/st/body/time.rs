@@ -1,6 +1,6 @@
 //! Sums, differences and multiples of durations and points in time.
 
-use super::operator::fold_int;
+use super::fold::fold_int;
 use super::{Body, Operand};
 use crate::hir::code::{BinaryOp as Op, ExprId, ExprKind, PathId, Root, StmtKind};
 use crate::hir::{Elementary, Type};
@@ -159,8 +159,7 @@ impl Body<'_, '_> {
             return self.error(Message::E2028, factor.range, "division by zero");
         }
         if let (Some(Const::Int(a)), Some(Const::Int(b))) = (time.as_const(), factor.as_const()) {
-            let value = fold_int(op, *a, *b).expect("the divisor is not 0");
-            return self.folded(Const::Int(value), ty, range);
+            return self.folded_int(fold_int(op, *a, *b), ty, range);
         }
         let constant = factor.as_const().is_some();
         let factor = self.as_scalar(factor, TypeId::of(factor_el));

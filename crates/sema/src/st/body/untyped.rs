@@ -77,8 +77,7 @@ impl Body<'_, '_> {
             return Some(self.error(Message::E2028, right.range, "division by zero"));
         }
         if let (Some(Const::Int(a)), Some(Const::Int(b))) = (left.as_const(), right.as_const()) {
-            let value = super::operator::fold_int(op, *a, *b)?;
-            return Some(self.folded(Const::Int(value), ty, range));
+            return Some(self.folded_int(super::fold::fold_int(op, *a, *b), ty, range));
         }
         let op = match op {
             BinaryOp::Modulo => Op::Modulo,
