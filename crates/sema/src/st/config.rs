@@ -505,20 +505,20 @@ impl Analysis<'_> {
         Some(place)
     }
 
+    /// An initial value for one instance: its numbers take the place of those that its type gives.
     fn instance_initial(&mut self, unit: UnitId, initial: st::Id<st::Expr>, found: &Found) {
-        if !self.types.is_scalar(found.ty) {
-            let range = self.unit(unit).arena[initial].range;
-            self.unsupported(unit, range, "an initial value for this type in VAR_CONFIG");
-            return;
-        }
         let scope = self.global_scope(unit);
-        let Some(value) = self.constant(scope, initial, found.ty) else {
+        let value = self.value_of(scope, initial, found.ty);
+        let storage = self.storage(found.ty);
+        let Some(leaves) = self.init_leaves(value, storage) else {
+            let range = self.unit(unit).arena[initial].range;
+            self.unsupported(unit, range, "this initial value in VAR_CONFIG");
             return;
         };
-        let mut body = super::body::Body::for_constant(self, scope);
-        let bits = body.const_bits(&value, found.ty);
         let place = &found.place;
         let initial = &mut self.hir.tags[place.tag.index()].initial;
-        initial.push((place.path.clone(), bits));
+        for (path, bits) in leaves {
+            initial.push(([place.path.clone(), path].concat(), bits));
+        }
     }
 }

@@ -34,6 +34,7 @@ mod globals;
 mod heritage;
 mod hidden;
 mod inheritance;
+mod init_leaves;
 mod initial;
 mod instance;
 mod kept;

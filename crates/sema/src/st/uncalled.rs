@@ -19,13 +19,27 @@ impl Analysis<'_> {
         let uncalled: Vec<PouId> = units
             .filter(|id| !called.contains(id) && self.is_open_to_the_user(*id))
             .collect();
+        let (mark, mut next) = (self.wanted.len(), self.wanted.len());
         for id in uncalled {
-            let mark = self.wanted.len();
             let bindings = self.wide_bindings(id);
             let made = self.instance(id, bindings);
-            self.body(made);
-            self.forget_wanted(mark);
+            self.want(made);
         }
+        // What of the user's these call, and nobody else does, is looked at as well.
+        while next < self.wanted.len() {
+            let id = self.wanted[next];
+            if self.is_written_by_the_user(id) {
+                self.body(id);
+            }
+            next += 1;
+        }
+        self.drop_wanted(mark);
+    }
+
+    /// Whether a body is one of a source, not made to choose another or for what extends its own.
+    fn is_written_by_the_user(&self, id: PouId) -> bool {
+        let pou = self.pous.get(id.index());
+        pou.is_some_and(|pou| !self.is_library(pou.unit) && pou.receiver.is_none())
     }
 
     /// Whether it is a unit of the user with open arrays, as it is written.
@@ -37,20 +51,6 @@ impl Analysis<'_> {
             && !self.is_library(pou.unit)
             && self.pou(home).kind != PouKind::Interface
             && self.has_open_arrays(id)
-    }
-
-    /// Drops what bodies from `mark` on call and nobody else does. Those of the user are looked at
-    /// first.
-    pub(crate) fn forget_wanted(&mut self, mark: usize) {
-        let mut next = mark;
-        while next < self.wanted.len() {
-            let id = self.wanted[next];
-            if !self.is_library(self.pou(id).unit) {
-                self.body(id);
-            }
-            next += 1;
-        }
-        self.drop_wanted(mark);
     }
 
     fn wide_bindings(&mut self, id: PouId) -> Bindings {
