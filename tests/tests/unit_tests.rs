@@ -59,8 +59,9 @@ fn compiled(map: &SourceMap, sources: &Sources, options: &FrontOptions) -> TestP
 
 /// The failures of all tests.
 fn failures(program: &TestProgram, engine: TestEngine) -> Vec<Failure> {
-    let mut run = program.start(engine).expect("engines run all tests");
+    let mut run = program.start(engine);
     let results = (0..program.tests().len()).map(|position| run.run(position));
+    let results = results.map(|result| result.expect("engines run all tests"));
     results.filter_map(|result| result.failure).collect()
 }
 
@@ -285,17 +286,44 @@ fn examples_of_the_codes_give_them() {
     }
 }
 
+#[test]
+fn tests_with_much_state_are_run_in_parts() {
+    let mut text = "CONFIGURATION c VAR_GLOBAL g : INT := 7; END_VAR END_CONFIGURATION
+        FUNCTION_BLOCK Big VAR a : ARRAY[0..249999] OF DINT; n : INT; END_VAR
+        a[n] := n + 10; n := n + 1; END_FUNCTION_BLOCK
+        SETUP VAR b : Big; END_VAR b(); END_SETUP\n"
+        .to_owned();
+    // A million bytes each, and eight million fit into a part.
+    for number in 0..20 {
+        let expected = if number == 13 { 12 } else { 11 };
+        text += &format!(
+            "TEST '{number}' b(); ASSERT_EQ(b.a[1], {expected}); g := g + 1; ASSERT_EQ(g, 8); END_TEST\n"
+        );
+    }
+    let (map, sources) = load("t.st", &text);
+    let program = compiled(&map, &sources, &FrontOptions::default());
+    for engine in ENGINES {
+        let failures = failures(&program, engine);
+        let told: Vec<_> = failures.iter().map(|failure| told(&map, failure)).collect();
+        assert_eq!(
+            told,
+            [(4 + 13, "got 11, expected 12".to_owned())],
+            "{engine:?}"
+        );
+    }
+}
+
 /// What is checked and compiled, to the end or with a message.
 fn survives(text: &str) {
     let (map, sources) = load("t.st", text);
-    for tests in [Tests::Checked, Tests::Run] {
+    for tests in [Tests::Checked, Tests::RUN_ALL] {
         let mut diagnostics = Diagnostics::new();
         let options = FrontOptions {
             tests,
             ..FrontOptions::default()
         };
         let done = match tests {
-            Tests::Run => {
+            Tests::Run { .. } => {
                 TestProgram::compile(&map, &sources, &options, &mut diagnostics).is_some()
             }
             Tests::Checked | Tests::LeftOut => {

@@ -146,7 +146,7 @@ impl Program {
 
     /// Reads the program and compiles its tests.
     pub(crate) fn compile_tests(&self, messages: &mut Messages) -> Option<TestProgram> {
-        let (sources, project) = self.read(messages, Tests::Run)?;
+        let (sources, project) = self.read(messages, Tests::RUN_ALL)?;
         let (map, diagnostics) = (&messages.map, &mut messages.diagnostics);
         TestProgram::compile(map, &sources, &project.options, diagnostics)
     }

@@ -52,21 +52,21 @@ pub(crate) fn run(arguments: &Arguments, messages: &mut Messages) -> Result<(), 
         EngineChoice::Jit => TestEngine::Jit,
         EngineChoice::Interp => TestEngine::Interp,
     };
-    let mut tests = match program.start(engine) {
-        Ok(tests) => tests,
-        Err(refused) => {
-            refused
-                .into_iter()
-                .for_each(|diagnostic| messages.diagnostics.push(diagnostic));
-            return Ok(());
-        }
-    };
+    let mut tests = program.start(engine);
     let mut listing = Listing::default();
     let mut results = Vec::with_capacity(chosen.len());
     for position in chosen {
-        let result = tests.run(position);
-        listing.show(&messages.map, &program, &result);
-        results.push(result);
+        match tests.run(position) {
+            Ok(result) => {
+                listing.show(&messages.map, &program, &result);
+                results.push(result);
+            }
+            Err(refused) => {
+                let refused = refused.into_iter();
+                refused.for_each(|diagnostic| messages.diagnostics.push(diagnostic));
+                return Ok(());
+            }
+        }
     }
     terminal::print("\n");
     if let Some(path) = &arguments.junit {

@@ -98,7 +98,7 @@ pub fn check(
 }
 
 /// As [`check`], and says what the outputs of a program that runs tests mean.
-fn check_tests(
+pub(crate) fn check_tests(
     map: &SourceMap,
     sources: &Sources,
     options: &FrontOptions,
@@ -287,25 +287,6 @@ pub(crate) fn lowered(
     // Prescan has no faults: it only stores.
     module.image = run_prescan(verified).unwrap_or_else(|fault| panic!("prescan failed: {fault}"));
     Some(module)
-}
-
-/// Compiles the tests of a program to a module that runs them; none if there are no tests.
-pub(crate) fn compile_suite(
-    map: &SourceMap,
-    sources: &Sources,
-    options: &FrontOptions,
-    diagnostics: &mut Diagnostics,
-) -> Option<(Option<Module>, Suite)> {
-    let options = FrontOptions {
-        tests: Tests::Run,
-        ..options.clone()
-    };
-    let (program, suite) = check_tests(map, sources, &options, diagnostics)?;
-    if suite.tests.is_empty() {
-        return Some((None, suite));
-    }
-    let module = lowered(&program, &options, diagnostics)?;
-    Some((Some(module), suite))
 }
 
 /// Says everything that [`compile`] says. A module is made only where an option is about it.

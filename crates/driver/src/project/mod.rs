@@ -139,7 +139,7 @@ impl Project {
         let (mut paths, tests) = (paths?, tests?);
         match self.options.tests {
             Tests::LeftOut => Sources::load_without(map, &paths, &tests, levels, diagnostics),
-            Tests::Checked | Tests::Run => {
+            Tests::Checked | Tests::Run { .. } => {
                 paths.extend(tests);
                 Sources::load(map, &paths, levels, diagnostics)
             }

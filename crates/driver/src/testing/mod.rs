@@ -1,14 +1,14 @@
-//! Runs the unit tests of a program: one module for all of them, one scan for each, every one from
-//! the state at the start.
+//! Runs the unit tests of a program: one module for all of them, or for many, one scan for each, every one
+//! from the state at the start.
 
 mod junit;
+mod parts;
 mod verdict;
 
 pub use iecc_sema::st::testing::Test;
 pub use junit::junit;
 
 use crate::engine::{for_software, verified};
-use crate::front::compile_suite;
 use crate::refusal;
 use crate::run::{Probe, Probes};
 use crate::{FrontOptions, Sources};
@@ -19,6 +19,7 @@ use iecc_jit::Jit;
 use iecc_sema::st::testing::Suite;
 use iecc_source::SourceMap;
 use iecc_target::{Engine, Fault, region_bytes};
+use parts::Part;
 use std::time::{Duration, Instant};
 
 /// What executes tests.
@@ -33,8 +34,7 @@ pub enum TestEngine {
 /// The tests of a program, compiled.
 #[derive(Debug, Clone)]
 pub struct TestProgram {
-    /// None if there are no tests.
-    module: Option<Module>,
+    parts: Vec<Part>,
     suite: Suite,
 }
 
@@ -46,8 +46,8 @@ impl TestProgram {
         options: &FrontOptions,
         diagnostics: &mut Diagnostics,
     ) -> Option<Self> {
-        let (module, suite) = compile_suite(map, sources, options, diagnostics)?;
-        Some(Self { module, suite })
+        let (parts, suite) = parts::compile(map, sources, options, diagnostics)?;
+        Some(Self { parts, suite })
     }
 
     /// The tests, by file and in their order.
@@ -69,32 +69,13 @@ impl TestProgram {
             .collect()
     }
 
-    /// Makes the tests ready to run.
-    ///
-    /// # Errors
-    /// All reasons why the engine cannot run them.
-    pub fn start(&self, engine: TestEngine) -> Result<TestRun<'_>, Vec<Diagnostic>> {
-        let Some(module) = &self.module else {
-            return Ok(TestRun {
-                program: self,
-                machine: None,
-            });
-        };
-        let mut module = module.clone();
-        let seen = self.outputs();
-        let probes = Probes::open(&mut module, &[Suite::CHOICE.to_owned()], &seen)?;
-        let machine = Machine::new(&module, engine)?;
-        Ok(TestRun {
+    /// Makes the tests ready to run on an engine.
+    pub fn start(&self, engine: TestEngine) -> TestRun<'_> {
+        TestRun {
             program: self,
-            machine: Some(Prepared {
-                start: machine.state().to_vec(),
-                inputs: region_bytes(&module, Region::Input),
-                outputs: region_bytes(&module, Region::Output),
-                machine,
-                probes,
-                module,
-            }),
-        })
+            engine,
+            prepared: None,
+        }
     }
 
     /// The outputs that tell what failed.
@@ -112,7 +93,9 @@ impl TestProgram {
 #[derive(Debug)]
 pub struct TestRun<'p> {
     program: &'p TestProgram,
-    machine: Option<Prepared>,
+    engine: TestEngine,
+    /// The part that ran last, by position.
+    prepared: Option<(usize, Prepared)>,
 }
 
 /// What became of a test.
@@ -138,33 +121,25 @@ pub struct Failure {
 impl TestRun<'_> {
     /// Runs a test.
     ///
+    /// # Errors
+    /// All reasons why the engine cannot run it.
+    ///
     /// # Panics
     /// If there is no test at the position.
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "people want to know how long tests take"
-    )]
-    pub fn run(&mut self, position: usize) -> TestResult {
-        let test = &self.program.suite.tests[position];
-        let machine = self.machine.as_mut().expect("there are tests");
-        let begin = Instant::now();
-        let ended = machine.run(position);
-        let time = begin.elapsed();
-        let failure = match ended {
-            Ok(()) => machine.failed_check().map(|number| Failure {
-                fault: false,
-                diagnostic: machine.assertion(&self.program.suite, number, test),
-            }),
-            Err(fault) => Some(Failure {
-                fault: true,
-                diagnostic: verdict::fault(&machine.module, test, fault),
-            }),
+    pub fn run(&mut self, position: usize) -> Result<TestResult, Vec<Diagnostic>> {
+        let part = self.part_of(position);
+        let prepared = match self.prepared.take() {
+            Some((known, prepared)) if known == part => prepared,
+            Some(_) | None => Prepared::new(self.program, part, self.engine)?,
         };
-        TestResult {
-            position,
-            failure,
-            time,
-        }
+        let (_, prepared) = self.prepared.insert((part, prepared));
+        Ok(prepared.result(&self.program.suite, position))
+    }
+
+    fn part_of(&self, position: usize) -> usize {
+        let mut parts = self.program.parts.iter();
+        let part = parts.position(|part| part.tests.contains(&position));
+        part.expect("every test is in a part")
     }
 }
 
@@ -181,6 +156,51 @@ struct Prepared {
 }
 
 impl Prepared {
+    fn new(
+        program: &TestProgram,
+        part: usize,
+        engine: TestEngine,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let mut module = program.parts[part].module.clone();
+        let seen = program.outputs();
+        let probes = Probes::open(&mut module, &[Suite::CHOICE.to_owned()], &seen)?;
+        let machine = Machine::new(&module, engine)?;
+        Ok(Self {
+            start: machine.state().to_vec(),
+            inputs: region_bytes(&module, Region::Input),
+            outputs: region_bytes(&module, Region::Output),
+            machine,
+            probes,
+            module,
+        })
+    }
+
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "people want to know how long tests take"
+    )]
+    fn result(&mut self, suite: &Suite, position: usize) -> TestResult {
+        let test = &suite.tests[position];
+        let begin = Instant::now();
+        let ended = self.run(position);
+        let time = begin.elapsed();
+        let failure = match ended {
+            Ok(()) => self.failed_check().map(|number| Failure {
+                fault: false,
+                diagnostic: self.assertion(suite, number, test),
+            }),
+            Err(fault) => Some(Failure {
+                fault: true,
+                diagnostic: verdict::fault(&self.module, test, fault),
+            }),
+        };
+        TestResult {
+            position,
+            failure,
+            time,
+        }
+    }
+
     fn run(&mut self, position: usize) -> Result<(), Fault> {
         self.machine.set_state(&self.start);
         self.probes.set[0].set(&mut self.inputs, &[position as u64 + 1]);

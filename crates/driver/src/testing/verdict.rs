@@ -98,7 +98,9 @@ pub(super) fn fault(module: &Module, test: &Test, fault: Fault) -> Diagnostic {
     match origin {
         // What it is in is said already.
         Some(origin) if origin.label.starts_with("TEST ") => diagnostic,
-        Some(origin) => diagnostic.label(format!("in {}", origin.label)),
+        Some(origin) => diagnostic
+            .label(format!("in {}", origin.label))
+            .also(test.span, "the test"),
         None => diagnostic,
     }
 }

@@ -230,9 +230,9 @@ impl Body<'_, '_> {
         self.add_expr(kind, Elementary::Udint, range)
     }
 
-    /// Copies an instance, but never what says of which type it is.
+    /// Copies an instance, but never what says of which type it is and whether it is a mock.
     pub(super) fn copy_instance(&mut self, pou: PouId, to: &Place, from: &Place, range: TextRange) {
-        if !self.an.is_numbered(pou) {
+        if !self.an.is_numbered(pou) && !self.an.testing.mocks {
             let (to, from) = (self.path_of(to, range), self.path_of(from, range));
             self.before(StmtKind::Copy(to, from), range);
             return;

@@ -9,6 +9,8 @@ use iecc_source::TextRange;
 
 /// A test with the bodies around it, and what they run on.
 pub(crate) struct TestRun {
+    /// What chooses it.
+    pub number: u64,
     pub unit: UnitId,
     pub test: (PouId, Place),
     pub setup: Option<(PouId, Place)>,
@@ -29,9 +31,10 @@ impl Analysis<'_> {
         let mut body = Body::outside(self, first);
         let selector = body.load_udint(choice);
         let mut arms = Vec::with_capacity(runs.len());
-        for (number, run) in (1..).zip(runs) {
+        for run in runs {
             body.unit = run.unit;
-            arms.push((vec![(number, number)], body.test_run(failed, run)));
+            let label = vec![(run.number, run.number)];
+            arms.push((label, body.test_run(failed, run)));
         }
         body.unit = first;
         let otherwise = Block::new();

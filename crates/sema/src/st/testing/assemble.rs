@@ -11,7 +11,7 @@ impl Analysis<'_> {
     pub(crate) fn assemble_all(&mut self) {
         match self.options.tests {
             Tests::LeftOut | Tests::Checked => self.assemble(),
-            Tests::Run => self.assemble_tests(),
+            Tests::Run { .. } => self.assemble_tests(),
         }
     }
 
@@ -19,14 +19,19 @@ impl Analysis<'_> {
         let choice = self.hidden_tag(Suite::CHOICE, Elementary::Udint, View::Number);
         let failed = self.failed_tag();
         let mut runs = Vec::new();
-        for case in self.testing.cases.clone() {
+        for (position, case) in (0..).zip(self.testing.cases.clone()) {
+            if !self.options.tests.runs(position) {
+                continue;
+            }
             let ty = self.types.intern(TypeKind::Instance(case.test));
             let (storage, init) = (self.storage(ty), self.default_init(ty));
-            let name = format!("test'{}", runs.len() + 1);
+            let name = format!("test'{}", position + 1);
             let span = self.pou(case.test).span;
             let tag = self.add_tag(&name, storage, View::Number, init, Some(span));
+            self.testing.cases[position as usize].tag = Some(tag);
             let fixture = whole_or_base(tag, case.setup.is_some());
             runs.push(TestRun {
+                number: u64::from(position) + 1,
                 unit: self.pou(case.test).unit,
                 test: (self.want(case.test), Place::whole(tag)),
                 setup: case.setup.map(|setup| (self.want(setup), fixture.clone())),
@@ -48,7 +53,7 @@ impl Analysis<'_> {
 
     /// Shows what checks store. To be done when all bodies are written.
     pub(crate) fn show_results(&mut self) {
-        if self.options.tests != Tests::Run {
+        if !matches!(self.options.tests, Tests::Run { .. }) {
             return;
         }
         let failed = self.failed_tag();

@@ -28,8 +28,31 @@ pub enum Tests {
     LeftOut,
     /// They are checked; the program is what it is without them.
     Checked,
-    /// The program is the one that runs them.
-    Run,
+    /// The program is the one that runs some of them.
+    Run {
+        /// The position of the first.
+        first: u32,
+        /// How many; all that there are if there are less.
+        count: u32,
+    },
+}
+
+impl Tests {
+    /// The program runs all tests.
+    pub const RUN_ALL: Self = Self::Run {
+        first: 0,
+        count: u32::MAX,
+    };
+
+    /// Whether the program runs the test at a position.
+    fn runs(self, position: u32) -> bool {
+        match self {
+            Self::LeftOut | Self::Checked => false,
+            Self::Run { first, count } => position
+                .checked_sub(first)
+                .is_some_and(|index| index < count),
+        }
+    }
 }
 
 /// The tests of a program, and what its outputs mean.
@@ -57,6 +80,8 @@ pub struct Test {
     pub title: String,
     /// The title where it stands.
     pub span: Span,
+    /// Its instance, in the program that runs it.
+    pub tag: Option<TagId>,
 }
 
 /// Something that a test asserts.
@@ -212,6 +237,7 @@ pub(crate) struct Case {
     pub test: PouId,
     pub setup: Option<PouId>,
     pub teardown: Option<PouId>,
+    pub tag: Option<TagId>,
 }
 
 /// Tags of a function that can be mocked.
@@ -261,7 +287,7 @@ impl Analysis<'_> {
     /// The tag that holds the time where programs run tests; `None` where the time is that of the
     /// scan.
     pub(crate) fn clock(&mut self) -> Option<TagId> {
-        if self.options.tests != Tests::Run {
+        if !matches!(self.options.tests, Tests::Run { .. }) {
             return None;
         }
         Some(self.test_clock())
@@ -351,7 +377,11 @@ impl Analysis<'_> {
     /// The tests of the program and what they check.
     pub(crate) fn suite(&mut self) -> Suite {
         let cases = std::mem::take(&mut self.testing.cases);
-        let tests = cases.iter().map(|case| self.described(case.test)).collect();
+        let described = |case: &Case| Test {
+            tag: case.tag,
+            ..self.described(case.test)
+        };
+        let tests = cases.iter().map(described).collect();
         Suite {
             tests,
             checks: std::mem::take(&mut self.testing.checks),

@@ -45,7 +45,9 @@ impl Analysis<'_> {
             let fixture = fixtures[&self.unit(unit).file];
             let test = self.declare_test(unit, PouKind::FunctionBlock);
             self.pous[test.index()].extends.extend(fixture.setup);
-            let Test { file, title, span } = self.described(test);
+            let Test {
+                file, title, span, ..
+            } = self.described(test);
             match titles.get(&(file, title.clone())) {
                 Some(&first) => {
                     let message = format!("this file has a test `{title}` already");
@@ -57,6 +59,7 @@ impl Analysis<'_> {
                 test,
                 setup: fixture.setup,
                 teardown: fixture.teardown,
+                tag: None,
             });
         }
     }
@@ -130,6 +133,7 @@ impl Analysis<'_> {
             file: self.unit(pou.unit).file,
             title: self.title(pou.unit),
             span: pou.span,
+            tag: None,
         }
     }
 
