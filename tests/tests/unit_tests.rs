@@ -3,7 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "tests read files")]
 
 use iecc_ast::Names;
-use iecc_diag::{Diagnostics, Severity};
+use iecc_diag::{Code, Diagnostic, Diagnostics, Severity};
 use iecc_driver::testing::{Failure, TestEngine, TestProgram};
 use iecc_driver::{FrontOptions, OnFault, Sources, Tests, check, parallel_map};
 use iecc_grammar::st::{Dialect, lex};
@@ -113,7 +113,10 @@ fn files_have_no_warnings_and_are_checked_like_that() {
         };
         let mut diagnostics = Diagnostics::new();
         check(&map, &sources, &options, &mut diagnostics);
-        let found: Vec<_> = diagnostics.iter().map(|d| (d.code, &d.message)).collect();
+        // Instances are copied to see what becomes of mocks.
+        let meant = |d: &&Diagnostic| d.code == Code::E3057 && name == "mocks.st";
+        let found = diagnostics.iter().filter(|d| !meant(d));
+        let found: Vec<_> = found.map(|d| (d.code, &d.message)).collect();
         assert!(found.is_empty(), "{name}: {found:#?}");
     }
 }
