@@ -50,6 +50,34 @@ fn random_modules_end_without_running_out_of_fuel() {
     }
 }
 
+/// Undoing a scan is compared as well: many scans end with a fault, most of them after they stored
+/// something, and the state stays as it was.
+#[test]
+fn many_scans_fault_and_change_nothing() {
+    let (mut scans, mut faults) = (0, 0);
+    for seed in seeds(SEEDS) {
+        let module = random_module(seed, &Options::all());
+        let mut engine = interpreter(&module);
+        let mut outputs = iecc_target::region_bytes(&module, iecc_ir::Region::Output);
+        for scan in random_stimulus(&module, &mut Rng::new(seed), SCANS) {
+            let before = (engine.state().to_vec(), outputs.clone());
+            let result = engine.step(scan.now_ns, &scan.inputs, &mut outputs);
+            scans += 1;
+            if result.is_err() {
+                faults += 1;
+                assert!(
+                    before == (engine.state().to_vec(), outputs.clone()),
+                    "seed {seed}"
+                );
+            }
+        }
+    }
+    assert!(
+        (scans / 10..scans / 2).contains(&faults),
+        "{faults} of {scans} scans fault"
+    );
+}
+
 /// The generator reaches every operation, terminator and instruction; else the tests above say less
 /// than they seem to.
 #[test]

@@ -60,6 +60,58 @@ impl<'a> Body<'a> {
         }
     }
 
+    /// Makes a function without loops, whose blocks jump to any later blocks: every graph without loops
+    /// can come of it.
+    pub(super) fn finish_graph(mut self, blocks: usize) -> Function {
+        let later: Vec<Block> = (0..blocks).map(|_| self.builder.create_block()).collect();
+        for next in 0..blocks {
+            for _ in 0..self.rng.below(4) {
+                self.simple_statement();
+            }
+            self.jump_on(&later[next..]);
+            self.continue_in(later[next]);
+        }
+        self.publish();
+        self.return_now();
+        self.builder.finish()
+    }
+
+    /// A statement that may depend on a branch in hardware: it leaves outputs alone, whose old value
+    /// cannot be loaded.
+    fn simple_statement(&mut self) {
+        if self.rng.one_in(2) {
+            return self.assign();
+        }
+        if self.rng.one_in(2) {
+            return self.accumulate();
+        }
+        let ty = self.random_type();
+        let value = self.value(ty);
+        if let Some(place) = self.place(|route| route.is_value(ty) && route.is_kept()) {
+            self.builder.store(place, value);
+        }
+    }
+
+    /// Jumps to near blocks more often, so that graphs are deep.
+    fn jump_on(&mut self, later: &[Block]) {
+        let targets = [(); 3].map(|()| {
+            let reach = self.rng.pick(&[2, 4, later.len()]);
+            later[self.rng.below(reach.min(later.len()))]
+        });
+        match self.rng.below(4) {
+            0 => self.builder.jump(targets[0]),
+            1 => {
+                let value = self.value(Type::I8);
+                let cases = vec![(0, targets[1]), (1, targets[2]), (255, targets[1])];
+                self.builder.switch(value, cases, targets[0]);
+            }
+            _ => {
+                let cond = self.value(Type::I1);
+                self.builder.brif(cond, targets[0], targets[1]);
+            }
+        }
+    }
+
     /// Starts the function with these references, locals, parameters and results.
     pub(super) fn begin(
         &mut self,
@@ -98,6 +150,10 @@ impl<'a> Body<'a> {
             self.statement(DEPTH);
         }
         self.publish();
+        if self.options.faults && self.rng.one_in(3) {
+            // All that was stored is to be undone.
+            self.fault();
+        }
         self.return_now();
         (self.builder.finish(), self.cost)
     }
@@ -158,7 +214,7 @@ impl<'a> Body<'a> {
             12 if nest && cheap && self.options.loops => self.counted_loop(depth - 1),
             13 if nest && cheap && self.options.loops => self.tangle(depth - 1),
             14 => self.leave_early(),
-            15 if self.options.faults && self.rng.one_in(3) => self.fault(),
+            15 if self.options.faults => self.fault(),
             16 | 17 if self.options.timers => self.timer(),
             18 | 19 => self.accumulate(),
             20 | 21 => self.overlap(),
@@ -467,7 +523,12 @@ impl<'a> Body<'a> {
 
     fn fault(&mut self) {
         let [fail, stay] = self.blocks();
-        let cond = self.rare();
+        let often = self.rng.one_in(3);
+        let cond = if often {
+            self.value(Type::I1)
+        } else {
+            self.rare()
+        };
         self.builder.brif(cond, fail, stay);
         self.continue_in(fail);
         let code = self.rng.pick(FaultCode::ALL);

@@ -6,9 +6,12 @@
 //! [`MAX_COST`] instructions, so fuel plays no part.
 
 mod body;
+mod expressions;
 mod places;
 mod types;
 mod values;
+
+pub use expressions::random_expressions;
 
 use crate::rng::Rng;
 use crate::stimulus::random_bits;
@@ -140,6 +143,27 @@ pub fn random_module(seed: u64, options: &Options) -> Module {
             module.prescan = Some(module.scan);
         }
     }
+    module
+}
+
+/// A scan whose blocks jump to any later blocks, some statements in each.
+pub fn random_graph(seed: u64, blocks: usize) -> Module {
+    let rng = &mut Rng::new(seed);
+    let options = Options {
+        loops: false,
+        faults: false,
+        addresses: false,
+        elapsed: false,
+        timers: false,
+        ..Options::all()
+    };
+    let types = RandomTypes::new(rng, &options);
+    let mut module = empty_module(&types, rng);
+    let locals = types.random_locals(rng);
+    let mut body = Body::new(&module, &[], &options, rng, "scan");
+    body.begin(&[], &locals, &[], &[]);
+    let func = body.finish_graph(blocks);
+    module.scan = module.funcs.push(func);
     module
 }
 

@@ -1,7 +1,6 @@
 //! One check for every pass: text before, text after; both keep the verifier's rules and do the
 //! same when interpreted.
 
-use crate::random::Random;
 use iecc_interp::Interpreter;
 use iecc_ir::{Layout, MemType, Module, Place, Region, Root, Type};
 use iecc_ir::{parse_module, print_module, verify};
@@ -54,7 +53,7 @@ pub(crate) fn same_behaviour(before: &Module, after: &Module, same_state: bool, 
     let verified = verify(after).unwrap_or_else(|errors| panic!("{errors:?}\n{}", text()));
     let mut old = Interpreter::new(verify(before).expect("verified before")).with_fuel(FUEL);
     let mut new = Interpreter::new(verified).with_fuel(FUEL);
-    let mut random = Random::new(1);
+    let mut random = Random(1);
     let mut outputs = [Region::Output; 2].map(|region| region_bytes(before, region));
     let mut now_ns = 0;
     for scan in 0..SCANS {
@@ -90,4 +89,37 @@ fn random_inputs(module: &Module, random: &mut Random) -> Vec<u8> {
     let ty = MemType::Struct(module.input);
     layout.for_each_leaf(&module.types, &start, ty, &mut write);
     bytes
+}
+
+/// Numbers that are the same in every run (xorshift64*).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
+    }
+
+    fn below(&mut self, limit: u64) -> u64 {
+        (self.next() >> 33) % limit
+    }
+
+    /// Bits of a value, mostly small or at an edge.
+    fn bits(&mut self, ty: Type) -> u64 {
+        let any = self.next();
+        let edge = ty.mask() >> 1;
+        let bits = match self.below(8) {
+            0 => 0,
+            1 => u64::MAX,
+            2 => edge,
+            3 => edge + 1,
+            4 => any,
+            5 if ty == Type::F32 => u64::from(1.5f32.to_bits()),
+            5 if ty == Type::F64 => (-2.0f64).to_bits(),
+            _ => any % 9,
+        };
+        bits & ty.mask()
+    }
 }

@@ -5,6 +5,5 @@ mod cse;
 mod dce;
 mod fold;
 mod inline;
-mod random;
 mod size;
 mod software;
