@@ -142,14 +142,14 @@ impl Body<'_, '_> {
     }
 
     fn widen(&mut self, operand: &Operand, from: El, to: El) -> Option<ExprId> {
-        if !from.widens_to(to) {
+        if !self.widens(from, to) {
             return None;
         }
         let value = self.raw(operand);
         if from.storage() == to.storage() {
             return Some(value);
         }
-        let how = if from.is_bits() {
+        let how = if from.is_bits() && !to.is_real() {
             Conversion::Bits
         } else {
             Conversion::Value

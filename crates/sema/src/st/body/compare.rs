@@ -116,7 +116,7 @@ impl Body<'_, '_> {
             (false, true) => types.elementary(left.ty).map(TypeId::of),
             (false, false) => {
                 let (a, b) = (types.elementary(left.ty)?, types.elementary(right.ty)?);
-                a.common(b).map(TypeId::of)
+                self.common(a, b).map(TypeId::of)
             }
         }
     }

@@ -119,7 +119,7 @@ impl Body<'_, '_> {
                 high: last,
                 ..
             } => i128::from(low) <= *first && *last <= i128::from(high),
-            TypeKind::Elementary(el) if el.is_int() => {
+            TypeKind::Elementary(el) if self.counts(*el) => {
                 let (first, last) = el.range();
                 i128::from(low) <= first && last <= i128::from(high)
             }
@@ -136,7 +136,7 @@ impl Body<'_, '_> {
 
     fn integer_index(&mut self, operand: &Operand) -> bool {
         let ty = operand.ty;
-        if ty == TypeId::UNTYPED_INT || self.an.types.elementary(ty).is_some_and(El::is_int) {
+        if self.is_whole(operand) {
             return true;
         }
         let message = format!("a subscript is an integer, not {}", self.type_name(ty));

@@ -175,7 +175,7 @@ impl Body<'_, '_> {
             return Some(value.clone());
         }
         match (self.number_behind(from.ty), types.elementary(to)) {
-            (Some(a), Some(b)) if a.widens_to(b) => Some(match value {
+            (Some(a), Some(b)) if self.widens(a, b) => Some(match value {
                 Const::Int(number) if b.is_real() => Const::Real(round_to(b, *number as f64)),
                 other => other.clone(),
             }),

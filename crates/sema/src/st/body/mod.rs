@@ -5,6 +5,7 @@
 //! everything, so one mistake gives one message.
 
 mod assertion;
+mod bits_as_numbers;
 mod builtin;
 mod call;
 mod coerce;

@@ -320,7 +320,7 @@ impl Body<'_, '_> {
         for operand in [left, right] {
             let untyped = matches!(operand.ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL);
             let el = self.an.types.elementary(operand.ty);
-            let fits = |el: El| el.is_int() || (el.is_real() && op != BinaryOp::Modulo);
+            let fits = |el: El| self.counts(el) || (el.is_real() && op != BinaryOp::Modulo);
             if !untyped && !el.is_some_and(fits) {
                 let name = self.type_name(operand.ty);
                 let message = match op {
@@ -390,7 +390,7 @@ impl Body<'_, '_> {
             (false, false) => {
                 let a = self.an.types.elementary(left.ty)?;
                 let b = self.an.types.elementary(right.ty)?;
-                a.common(b).map(TypeId::of)
+                self.common(a, b).map(TypeId::of)
             }
         }
     }

@@ -365,7 +365,7 @@ impl Body<'_, '_> {
             .an
             .types
             .elementary(counter.ty)
-            .filter(|el| el.is_int());
+            .filter(|el| self.counts(*el));
         if el.is_none() && !counter.is_error() {
             let message = format!(
                 "a loop counts in an integer, not {}",

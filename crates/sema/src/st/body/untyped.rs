@@ -1,6 +1,7 @@
 //! Times as numbers (CODESYS): a whole number beside a duration counts milliseconds, beside a long
 //! one nanoseconds, as in conversions; the quotient of two durations is a number; `TIME()` is the clock.
 
+use super::bits_as_numbers::counts_as;
 use super::{Body, Operand};
 use crate::hir::code::{BinaryOp as Op, ExprKind};
 use crate::st::constant::Const;
@@ -102,8 +103,8 @@ impl Body<'_, '_> {
         let from = self.an.types.elementary(operand.ty)?;
         let bits = |el: El| el.is_bits() && el != El::Bool;
         let (from_number, to_number) = match (from.is_duration(), to.is_duration()) {
-            (true, false) if bits(to) => (from, number_of(to)),
-            (false, true) if bits(from) => (number_of(from), to),
+            (true, false) if bits(to) => (from, counts_as(to)),
+            (false, true) if bits(from) => (counts_as(from), to),
             _ => return None,
         };
         if !self.an.options.codesys {
@@ -132,15 +133,5 @@ impl Body<'_, '_> {
         }
         let value = self.add_expr(ExprKind::Now, El::Ltime.storage(), range);
         Some(Operand::value(value, ty, range))
-    }
-}
-
-/// The number with the bits of a bit string.
-fn number_of(bits: El) -> El {
-    match bits.bits() {
-        8 => El::Usint,
-        16 => El::Uint,
-        32 => El::Udint,
-        _ => El::Ulint,
     }
 }
