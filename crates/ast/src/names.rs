@@ -87,6 +87,13 @@ impl Names {
         symbol
     }
 
+    /// Makes all names so far words that do not count as seen.
+    pub fn reserve_all(&mut self) {
+        for entry in &mut self.entries {
+            entry.reserved = true;
+        }
+    }
+
     fn respell(&mut self, symbol: Symbol, name: &str) {
         let (start, end) = self.store(name);
         let entry = &mut self.entries[symbol.index()];
@@ -184,6 +191,16 @@ mod tests {
         assert_eq!(names.intern("Step"), step);
         assert_eq!(names.reserve("STEP"), step);
         assert_eq!(names.text(step), "Step");
+        names.intern("step");
+        assert_eq!(names.text(step), "Step");
+    }
+
+    #[test]
+    fn all_names_can_become_words() {
+        let mut names = Names::new();
+        let step = names.intern("STEP");
+        names.reserve_all();
+        assert_eq!(names.intern("Step"), step);
         names.intern("step");
         assert_eq!(names.text(step), "Step");
     }

@@ -94,6 +94,25 @@ impl Diagnostic {
         self
     }
 
+    /// Where it points, in any order.
+    pub fn spans(&self) -> impl Iterator<Item = Span> + '_ {
+        let labels = self.primary.iter().chain(&self.secondary);
+        let fix = self.fix.iter().map(|fix| fix.span);
+        labels.map(|label| label.span).chain(fix)
+    }
+
+    /// The same about text that is now elsewhere.
+    #[must_use]
+    pub fn moved(mut self, to: impl Fn(Span) -> Span) -> Self {
+        for label in self.primary.iter_mut().chain(&mut self.secondary) {
+            label.span = to(label.span);
+        }
+        if let Some(fix) = &mut self.fix {
+            fix.span = to(fix.span);
+        }
+        self
+    }
+
     /// Offers a replacement.
     #[must_use]
     pub fn fix(

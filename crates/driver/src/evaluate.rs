@@ -11,7 +11,8 @@ use iecc_target::{Engine, region_bytes};
 const FUEL: u64 = 10_000_000;
 
 /// Computes constants.
-pub(crate) struct Constants;
+#[derive(Debug, Clone, Copy)]
+pub struct Constants;
 
 impl Evaluator for Constants {
     fn run(&self, program: &Program, places: &[Place]) -> Result<Vec<u64>, String> {

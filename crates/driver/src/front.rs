@@ -9,7 +9,7 @@ use crate::rename::{Rename, rename};
 use crate::run::parse_duration;
 use crate::{Language, Levels, Sources};
 use iecc_ast::Names;
-use iecc_ast::st::File;
+use iecc_ast::st::{File, list_name};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_grammar::st::{Dialect, parse_file};
 use iecc_interp::run_prescan;
@@ -19,7 +19,6 @@ use iecc_sema::hir::{self, StructKind, Trigger};
 use iecc_sema::st::testing::{Suite, Tests};
 use iecc_sema::{logix, st};
 use iecc_source::{FileId, SourceMap};
-use std::path::Path;
 
 /// Choices that the source does not make.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -159,7 +158,6 @@ fn check_logix(
     };
     let mut names = Names::new();
     let library = library(map, sources.library(), &mut names);
-    st::intern_words(&mut names);
     let functions = logix::library_functions();
     let library = st::library(&library, &names, &functions, &Constants);
     Some(logix::analyze(&project, library, &options, found))
@@ -172,7 +170,7 @@ fn check_text(
     found: &mut Diagnostics,
 ) -> Option<(hir::Program, Suite)> {
     let mut names = Names::new();
-    // Names keep their first spelling, which is to be the user's.
+    let library = library(map, sources.library(), &mut names);
     let parse = |id: &FileId| {
         let source = map.file(*id);
         let mut file = parse_file(*id, source.text(), options.dialect, &mut names, found);
@@ -180,7 +178,6 @@ fn check_text(
         file
     };
     let files: Vec<File> = sources.files().iter().map(parse).collect();
-    let library = library(map, sources.library(), &mut names);
     Some(meaning(&library, &files, &mut names, options, found))
 }
 
@@ -192,7 +189,6 @@ pub(crate) fn meaning(
     options: &FrontOptions,
     found: &mut Diagnostics,
 ) -> (hir::Program, Suite) {
-    st::intern_words(names);
     st::intern_hidden(names, files);
     let options = st::Options {
         codesys: options.dialect == Dialect::Codesys,
@@ -203,17 +199,7 @@ pub(crate) fn meaning(
     st::analyze_tests(library, files, names, options, evaluator, found)
 }
 
-/// What a list of global variables in a file is called: the name of the file, where that is a name.
-fn list_name(path: &str) -> Option<&str> {
-    let name = Path::new(path).file_stem()?.to_str()?;
-    let mut letters = name.bytes();
-    let first = letters.next()?;
-    let begins = first.is_ascii_alphabetic() || first == b'_';
-    let goes_on = letters.all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
-    (begins && goes_on).then_some(name)
-}
-
-/// The trees of the standard library.
+/// The trees of the standard library. To be parsed before the files of the user.
 pub(crate) fn library(map: &SourceMap, files: &[FileId], names: &mut Names) -> Vec<File> {
     let mut found = Diagnostics::new();
     let files = files.iter();
@@ -230,6 +216,9 @@ pub(crate) fn library(map: &SourceMap, files: &[FileId], names: &mut Names) -> V
     if let Some(mistake) = found.iter().next() {
         panic!("the library does not follow the grammar: {mistake:?}");
     }
+    st::intern_words(names);
+    // Names have the spelling in which the user writes them first.
+    names.reserve_all();
     library
 }
 

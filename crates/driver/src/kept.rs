@@ -1,7 +1,6 @@
 //! The standard library, parsed once for many small programs: tests check tens of thousands.
 //!
-//! What a program means is the same as in [`check`](crate::check). Only messages differ: a name that the
-//! library has too is spelled as there.
+//! What a program means, and what is said of it, is the same as in [`check`](crate::check).
 
 use crate::FrontOptions;
 use crate::front::{library, lowered, meaning};

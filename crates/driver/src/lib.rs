@@ -27,6 +27,7 @@ pub mod testing;
 pub use build::{Replay, VerilogRequest, build_object, build_verilog};
 pub use choices::{Choice, DIALECTS, EDITS, FAULTS, INITS, LEVELS, find as find_choice};
 pub use engine::EngineKind;
+pub use evaluate::Constants;
 pub use explain::{explain_instruction, list_instructions};
 pub use front::{
     Compiled, FrontOptions, TimerBase, check, check_options, compile, compile_with_tick,

@@ -8,12 +8,25 @@ pub struct ContentHash([u64; 2]);
 impl ContentHash {
     /// The hash of a text.
     pub fn of(text: &str) -> Self {
-        let mut lanes = [text.len() as u64 ^ SEEDS[0], SEEDS[1]];
-        for word in words(text.as_bytes()) {
+        Self::of_bytes(text.as_bytes())
+    }
+
+    /// The hash of bytes, which need not be text.
+    pub fn of_bytes(bytes: &[u8]) -> Self {
+        let mut lanes = [bytes.len() as u64 ^ SEEDS[0], SEEDS[1]];
+        for word in words(bytes) {
             lanes[0] = mix(lanes[0] ^ word, SEEDS[1]);
             lanes[1] = mix(lanes[1].rotate_left(23) ^ word, SEEDS[2]);
         }
         Self(lanes)
+    }
+
+    /// The hash as bytes, for hashes of hashes.
+    pub fn bytes(self) -> [u8; 16] {
+        let mut bytes = [0; 16];
+        bytes[..8].copy_from_slice(&self.0[0].to_le_bytes());
+        bytes[8..].copy_from_slice(&self.0[1].to_le_bytes());
+        bytes
     }
 }
 

@@ -40,7 +40,8 @@ impl SourceFile {
     }
 }
 
-/// All source texts of one run. Files are only added, so a [`FileId`] never dangles.
+/// All source texts of one run. Files are never taken away, so a [`FileId`] never dangles; spans
+/// are good until [`replace`](SourceMap::replace) gives their file another text.
 #[derive(Debug, Clone, Default)]
 pub struct SourceMap {
     files: Vec<SourceFile>,
@@ -62,6 +63,13 @@ impl SourceMap {
             lines,
         });
         FileId::from_index(self.files.len() - 1)
+    }
+
+    /// Gives a file another text.
+    pub fn replace(&mut self, id: FileId, text: impl Into<String>) {
+        let file = &mut self.files[id.index()];
+        file.text = text.into();
+        file.lines = LineIndex::new(&file.text);
     }
 
     /// The file of an id that this map gave out.

@@ -12,9 +12,11 @@
 )]
 
 pub(crate) mod build;
+mod declared;
 mod depth;
 mod explain;
 mod feed;
+mod file;
 mod lexer;
 mod repair;
 mod slice;
@@ -22,10 +24,11 @@ mod soft;
 pub(crate) mod token;
 mod unit;
 
+pub use file::{Parsed, parse_file, reparse_file};
 pub use lexer::{Tokens, lex};
 pub use slice::{Fragment, FragmentKind, slice};
 pub use token::{Kind, Token};
-pub use unit::{parse_file, parse_unit};
+pub use unit::parse_unit;
 
 /// Whose keywords hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

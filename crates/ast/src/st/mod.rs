@@ -76,6 +76,18 @@ pub struct File {
     pub units: Vec<Unit>,
 }
 
+/// What a list of global variables in a file is called: the name of the file without folders and
+/// ending, where that is a name.
+pub fn list_name(path: &str) -> Option<&str> {
+    let file = path.rsplit(['/', '\\']).next()?;
+    let name = file.rsplit_once('.').map_or(file, |(name, _)| name);
+    let mut letters = name.bytes();
+    let first = letters.next()?;
+    let begins = first.is_ascii_alphabetic() || first == b'_';
+    let goes_on = letters.all(|letter| letter.is_ascii_alphanumeric() || letter == b'_');
+    (begins && goes_on).then_some(name)
+}
+
 /// Names a scope of a [`File`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ScopeId(pub u32);
@@ -118,6 +130,9 @@ pub struct Unit {
     pub start: u32,
     /// The hash of its text, comments included.
     pub hash: ContentHash,
+    /// The hash of what it shows to others: of its text without comments and the statements of
+    /// bodies, and of which bodies have statements.
+    pub declared: ContentHash,
     /// What it is in.
     pub scope: ScopeId,
     /// What it is.
@@ -165,7 +180,33 @@ pub struct Pragma {
     pub range: TextRange,
 }
 
+impl UnitKind {
+    /// As [`Unit::bodies`].
+    pub fn bodies(&self, arena: &Arena) -> Vec<Block> {
+        let Self::Pou(pou) = self else {
+            return Vec::new();
+        };
+        let mut bodies = vec![pou.body];
+        for member in &arena[pou.members] {
+            match member {
+                Member::Method(method) => bodies.push(method.body),
+                Member::Action(action) => bodies.push(action.body),
+                Member::Property(property) => {
+                    let accessors = [property.get, property.set];
+                    bodies.extend(accessors.into_iter().flatten().map(|one| one.body));
+                }
+            }
+        }
+        bodies
+    }
+}
+
 impl Unit {
+    /// The bodies of the unit and of its members, empty ones too.
+    pub fn bodies(&self) -> Vec<Block> {
+        self.kind.bodies(&self.arena)
+    }
+
     /// Where a range of this unit is in its file.
     pub fn span(&self, range: TextRange) -> Span {
         range.in_file(self.file, self.start)

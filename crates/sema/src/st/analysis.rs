@@ -119,6 +119,8 @@ pub(crate) struct Analysis<'a> {
     pub depth: u32,
     /// The first unit that is not of the library.
     pub first_user_unit: u32,
+    /// How many of `pous` were there before any body was looked at.
+    pub declared_pous: usize,
 }
 
 /// How deep types, instances and constants may refer to one another.

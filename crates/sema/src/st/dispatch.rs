@@ -24,6 +24,8 @@ pub(crate) struct Dispatcher {
     pub unit: hir::PouId,
     /// Whether ENO is the last result.
     pub eno: bool,
+    /// The body whose parameters it has.
+    pub signature: PouId,
 }
 
 /// A body and the numbers of the types that it runs on.
@@ -116,7 +118,8 @@ impl Analysis<'_> {
         (!single).then(|| self.made_dispatcher(of, method, signature))
     }
 
-    fn made_dispatcher(
+    /// The unit that chooses.
+    pub(crate) fn made_dispatcher(
         &mut self,
         of: PouId,
         method: Option<Symbol>,
@@ -144,7 +147,11 @@ impl Analysis<'_> {
         let name = self.unique_unit_name(name);
         let code = Chooser::new(self, signature, shape, span).code(&choices);
         let unit = self.synthetic(name, code, span);
-        let made = Dispatcher { unit, eno };
+        let made = Dispatcher {
+            unit,
+            eno,
+            signature,
+        };
         self.dispatchers.insert((of, method), made);
         made
     }

@@ -149,7 +149,7 @@ impl Analysis<'_> {
             }
             for id in &called[pous.len() - 1..] {
                 let unit = self.wanted[id.index()];
-                pous.push(self.checked_pou(unit));
+                pous.push(self.checked_pou(unit).0);
             }
             next += 1;
         }

@@ -21,6 +21,7 @@
 mod address;
 mod address_part;
 mod analysis;
+mod bodies;
 mod body;
 mod config;
 pub mod constant;
@@ -46,6 +47,7 @@ mod overlay;
 mod paths;
 mod pragmas;
 mod program;
+mod recheck;
 mod resolve;
 pub mod signature;
 mod signatures;
@@ -60,6 +62,7 @@ pub use constant::Const;
 pub use elementary::{El, Family};
 pub use evaluate::Evaluator;
 pub use hidden::intern_hidden;
+pub use recheck::Kept;
 
 use crate::hir;
 use analysis::{Analysis, Namespace, Words};
@@ -103,26 +106,52 @@ const WORDS: [&str; 6] = ["EN", "ENO", "INTERVAL", "SINGLE", "PRIORITY", "BIT"];
 /// Decides what the program of some files means. The library's files are trees like others; what
 /// of them is not used is not looked at. Constants that are more than folding are computed by
 /// `evaluator`. The program means nothing if there are errors.
-pub fn analyze(
-    library: &[File],
-    files: &[File],
-    names: &Names,
+pub fn analyze<'a>(
+    library: &'a [File],
+    files: impl IntoIterator<Item = &'a File>,
+    names: &'a Names,
     options: Options,
-    evaluator: &dyn Evaluator,
+    evaluator: &'a dyn Evaluator,
     diagnostics: &mut Diagnostics,
 ) -> hir::Program {
     analyze_tests(library, files, names, options, evaluator, diagnostics).0
 }
 
 /// As [`analyze`], and says what the outputs of a program that runs tests mean.
-pub fn analyze_tests(
-    library: &[File],
-    files: &[File],
-    names: &Names,
+pub fn analyze_tests<'a>(
+    library: &'a [File],
+    files: impl IntoIterator<Item = &'a File>,
+    names: &'a Names,
     options: Options,
-    evaluator: &dyn Evaluator,
+    evaluator: &'a dyn Evaluator,
     diagnostics: &mut Diagnostics,
 ) -> (hir::Program, testing::Suite) {
+    analysis(library, files, names, options, evaluator).finish(diagnostics)
+}
+
+/// As [`analyze`], for whoever wants to know what is wrong and nothing else. Bodies that stand as they
+/// were when `kept` was filled are not looked at again while no declaration changed. `names` may
+/// have grown since; the library and the evaluator are the same.
+pub fn recheck<'a>(
+    library: &'a [File],
+    files: impl IntoIterator<Item = &'a File>,
+    names: &'a Names,
+    options: Options,
+    evaluator: &'a dyn Evaluator,
+    kept: &mut Kept,
+    diagnostics: &mut Diagnostics,
+) {
+    analysis(library, files, names, options, evaluator).finish_again(kept, diagnostics);
+}
+
+/// Everything up to the bodies.
+fn analysis<'a>(
+    library: &'a [File],
+    files: impl IntoIterator<Item = &'a File>,
+    names: &'a Names,
+    options: Options,
+    evaluator: &'a dyn Evaluator,
+) -> Analysis<'a> {
     let mut analysis = Analysis::new(names, options, evaluator);
     for file in library {
         analysis.declare_file(file, NamespaceId::LIBRARY);
@@ -140,7 +169,7 @@ pub fn analyze_tests(
     analysis.declare_tests();
     analysis.resolve_all();
     analysis.assemble_all();
-    analysis.finish(diagnostics)
+    analysis
 }
 
 /// The functions of a library with some names, and what these call.
@@ -240,6 +269,18 @@ impl<'a> Analysis<'a> {
             warnings: Vec::new(),
             depth: 0,
             first_user_unit: 0,
+            declared_pous: 0,
+        }
+    }
+
+    /// Initial values in types are checked even where no variable has the type.
+    fn declared_defaults(&mut self) {
+        for index in 0..self.type_decls.len() as u32 {
+            let id = signature::TypeDeclId(index);
+            if !self.is_library(self.type_decl(id).unit) {
+                let ty = self.declared_type(id);
+                self.default_init(ty);
+            }
         }
     }
 
@@ -270,6 +311,7 @@ impl<'a> Analysis<'a> {
             self.complete(id);
         }
         self.located_initials();
+        self.declared_defaults();
         for &id in &user {
             self.check_inheritance(id);
             let home = self.pou(id).owner.unwrap_or(id);
@@ -283,66 +325,6 @@ impl<'a> Analysis<'a> {
             if self.pou(home).kind != PouKind::Interface && !self.has_open_arrays(id) {
                 self.want(id);
             }
-        }
-    }
-
-    /// Checks bodies until no new ones come up.
-    fn finish(mut self, diagnostics: &mut Diagnostics) -> (hir::Program, testing::Suite) {
-        let mut next = 0;
-        while next < self.wanted.len() {
-            let id = self.wanted[next];
-            let made = match self
-                .synthetics
-                .iter()
-                .position(|(at, _)| at.index() == next)
-            {
-                Some(index) => self.synthetics.swap_remove(index).1,
-                None => self.checked_pou(id),
-            };
-            self.hir.pous.push(made);
-            next += 1;
-        }
-        self.check_uncalled();
-        self.lint();
-        self.show_results();
-        let suite = self.suite();
-        diagnostics.append(self.found);
-        (self.hir, suite)
-    }
-
-    fn checked_pou(&mut self, id: PouId) -> hir::Pou {
-        self.complete(id);
-        let again = self.pou(id).receiver.is_some();
-        let kept = again.then(|| std::mem::take(&mut self.found));
-        let code = self.body(id);
-        // Mistakes in a body are reported once, not for every type that it runs on.
-        if let Some(kept) = kept {
-            self.found = kept;
-        }
-        let pou = self.pou(id);
-        let (span, own) = (pou.span, self.text(pou.name));
-        let name = match pou.owner {
-            _ if self.is_test(pou.unit) => self.test_name(id).unwrap_or_default(),
-            Some(owner) => format!("{}.{own}", self.text(self.pou(owner).name)),
-            None => own.to_owned(),
-        };
-        let name = self.unique_unit_name(name);
-        hir::Pou {
-            name,
-            parameters: Vec::new(),
-            results: Vec::new(),
-            body: hir::Body::Text(Box::new(code)),
-            span,
-        }
-    }
-
-    /// Instances of generic units and units of different namespaces may have one name.
-    pub(crate) fn unique_unit_name(&mut self, name: String) -> String {
-        let number = self.unit_names.entry(name.clone()).or_insert(0);
-        *number += 1;
-        match *number {
-            1 => name,
-            number => format!("{name}'{number}"),
         }
     }
 }

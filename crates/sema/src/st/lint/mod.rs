@@ -10,24 +10,27 @@ mod recursion;
 pub(super) use flow::can_leave;
 
 use super::analysis::{Analysis, UnitRef};
+use super::bodies::{Checked, Notes};
 use super::signature::{Part, Pou, PouId, UnitId};
 use iecc_ast::st::{self, ExprKind, Member, ModifierKind, PouKind, UnitKind};
 use iecc_diag::{Code, Diagnostic};
 
 impl<'a> Analysis<'a> {
-    /// Looks at the units of the user.
-    pub(crate) fn lint(&mut self) {
-        self.recursion();
+    /// Looks at the units of the user, as far as nothing is noted for them.
+    pub(crate) fn lint(&mut self, notes: &mut Notes) {
+        self.recursion(&notes.bodies);
         let is_broken = |unit: &UnitRef<'_>| unit.unit.has_errors;
         if self.found.has_errors() || self.units.iter().any(is_broken) {
             return;
         }
         let (configured, extended) = (self.names_in_configurations(), self.extended());
-        for index in self.first_user_unit..self.units.len() as u32 {
-            self.unused_names(UnitId(index), &configured, &extended);
+        for (index, noted) in (self.first_user_unit..).zip(&mut notes.unused) {
+            self.noted(noted, |an| {
+                an.unused_names(UnitId(index), &configured, &extended);
+            });
         }
         for index in 0..self.pous.len() as u32 {
-            self.lint_body(PouId(index));
+            self.lint_body(PouId(index), &mut notes.bodies);
         }
         let warnings = std::mem::take(&mut self.warnings);
         for warning in warnings {
@@ -35,17 +38,37 @@ impl<'a> Analysis<'a> {
         }
     }
 
-    fn lint_body(&mut self, id: PouId) {
+    /// Gives the warnings that are noted, or looks for them and notes them.
+    fn noted(&mut self, noted: &mut Option<Vec<Diagnostic>>, look: impl FnOnce(&mut Self)) {
+        let before = self.warnings.len();
+        match noted {
+            Some(known) => self.warnings.extend(known.iter().cloned()),
+            None => {
+                look(self);
+                *noted = Some(self.warnings[before..].to_vec());
+            }
+        }
+    }
+
+    fn lint_body(&mut self, id: PouId, bodies: &mut [Checked]) {
         let pou = self.pou(id);
         let instance = !pou.bindings.generics.is_empty() || !pou.bindings.open.is_empty();
-        if self.is_library(pou.unit) || instance {
+        if self.is_library(pou.unit) || instance || pou.receiver.is_some() {
             return;
         }
-        if let Some(body) = self.written_body(id) {
-            self.unreached(id, body);
-            self.result_never_given(id);
-            self.read_before_assignment(id, body);
-        }
+        let Some(body) = self.written_body(id) else {
+            return;
+        };
+        let mut nowhere = None;
+        let place = self.hir_ids.get(&id);
+        let noted = place.map_or(&mut nowhere, |place| {
+            &mut bodies[place.index()].finding.lints
+        });
+        self.noted(noted, |an| {
+            an.unreached(id, body);
+            an.result_never_given(id);
+            an.read_before_assignment(id, body);
+        });
     }
 
     /// Gives a warning if there will be no errors, once for a place.

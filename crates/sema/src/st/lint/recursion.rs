@@ -1,9 +1,9 @@
 //! Recursion: no unit may be running when it is called, whatever lies between. State is laid out
 //! once, so this is an error; it is said once for everything that calls one another.
 
-use crate::hir::code::{CallId, ExprKind};
-use crate::hir::{self, Body};
+use crate::hir;
 use crate::st::analysis::Analysis;
+use crate::st::bodies::Checked;
 use iecc_diag::{Code, Diagnostic};
 use iecc_source::Span;
 use std::collections::VecDeque;
@@ -13,8 +13,10 @@ type Calls = Vec<Vec<(usize, Span)>>;
 
 impl Analysis<'_> {
     /// Reports every circle of calls.
-    pub(super) fn recursion(&mut self) {
-        let calls: Calls = self.hir.pous.iter().map(calls_of).collect();
+    pub(super) fn recursion(&mut self, bodies: &[Checked]) {
+        let indexed = |&(callee, span): &(hir::PouId, Span)| (callee.index(), span);
+        let calls = bodies.iter().map(|one| &one.calls);
+        let calls: Calls = calls.map(|one| one.iter().map(indexed).collect()).collect();
         for circle in circles(&calls, &self.hir.pous) {
             let diagnostic = self.circle(&circle);
             self.report(diagnostic);
@@ -35,22 +37,6 @@ impl Analysis<'_> {
         diagnostic
             .note("a unit has its variables once, so it cannot be called while it runs; use a loop")
     }
-}
-
-fn calls_of(pou: &hir::Pou) -> Vec<(usize, Span)> {
-    let Body::Text(code) = &pou.body else {
-        return Vec::new();
-    };
-    let mut found: Vec<(usize, Span)> = Vec::new();
-    for expr in &code.exprs {
-        if let ExprKind::Call(CallId(call)) = expr.kind {
-            let callee = code.calls[call as usize].callee.index();
-            found.push((callee, expr.span));
-        }
-    }
-    found.sort_by_key(|(callee, span)| (*callee, *span));
-    found.dedup_by_key(|(callee, _)| *callee);
-    found
 }
 
 /// A shortest circle through the first unit of everything that calls one another.
