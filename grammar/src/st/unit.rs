@@ -96,7 +96,11 @@ fn stray(tokens: &Tokens<'_>, list: &[Located], found: &mut Diagnostics) {
     let text = tokens.slice(token);
     let span = Span::new(tokens.file, start, end);
     let message = format!("`{text}` stands outside of every unit");
-    let diagnostic = Diagnostic::new(Code::E0030, span, message)
-        .label("expected FUNCTION, FUNCTION_BLOCK, PROGRAM, TYPE, CLASS, INTERFACE, NAMESPACE, CONFIGURATION, VAR_GLOBAL or TEST");
+    let expected = if text.eq_ignore_ascii_case("TEST") {
+        "expected a title behind it: TEST 'title'"
+    } else {
+        "expected FUNCTION, FUNCTION_BLOCK, PROGRAM, TYPE, CLASS, INTERFACE, NAMESPACE, CONFIGURATION, VAR_GLOBAL or TEST"
+    };
+    let diagnostic = Diagnostic::new(Code::E0030, span, message).label(expected);
     found.push(diagnostic);
 }

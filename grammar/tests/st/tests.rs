@@ -101,6 +101,7 @@ fn what_is_wrong_in_a_test_is_one_message() {
         ("TEST 'a' x := ; END_TEST", Code::E0010, ";"),
         ("TEST 'a' MOCK x END_TEST", Code::E0024, ""),
         ("TEST 'a' MOCK x\nMOCK y; END_TEST", Code::E0024, ""),
+        ("TEST b x := 1; END_TEST", Code::E0030, "TEST"),
         ("TEST 'a' 5 x := 1; END_TEST", Code::E0010, "5"),
         ("SETUP VAR x : INT END_VAR END_SETUP", Code::E0024, ""),
         ("TEST 'a' MOCK_FUNCTION f 5; END_TEST", Code::E0010, "5"),

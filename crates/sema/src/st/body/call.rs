@@ -301,7 +301,10 @@ impl Body<'_, '_> {
         }
         let message = format!("no function or instance is named `{}`", self.text(name));
         let mut diagnostic = Diagnostic::new(Message::E1018, self.span(range), message);
-        let candidates = self.an.visible(self.namespace);
+        let mut candidates = self.an.visible(self.namespace);
+        if self.in_test() {
+            candidates.extend(self.an.testing.words());
+        }
         if let Some(close) = self.an.similar(name, candidates) {
             diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
         }

@@ -258,6 +258,13 @@ impl Testing {
         }
     }
 
+    /// The names that mean something in tests, in a fixed order.
+    pub(crate) fn words(&self) -> Vec<Symbol> {
+        let mut words: Vec<Symbol> = self.words.keys().copied().collect();
+        words.sort_unstable();
+        words
+    }
+
     /// What a call of a name means in tests.
     pub(crate) fn word(&self, name: Symbol) -> Option<Word> {
         self.words.get(&name).copied()
