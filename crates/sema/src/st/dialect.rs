@@ -6,7 +6,7 @@ use iecc_ast::st::{
     AssignOp, BinaryOp, Expr, ExprKind, Member, Stmt, StmtKind, TypeDecl, TypeKind, TypeSpec, Unit,
     UnitKind, VarSection,
 };
-use iecc_ast::st::{ModifierKind, SectionKind};
+use iecc_ast::st::{ModifierKind, PouKind, SectionKind};
 use iecc_diag::{Code, Diagnostic};
 use iecc_source::TextRange;
 
@@ -46,10 +46,17 @@ fn foreign_forms(unit: &Unit) -> Vec<(TextRange, &'static str)> {
         match member {
             Member::Property(property) => found.push((property.name.range, "PROPERTY")),
             Member::Action(action) => found.push((action.name.range, "ACTION of a unit")),
+            Member::Method(method) if is_program(unit) => {
+                found.push((method.name.range, "a method of a program"));
+            }
             Member::Method(_) => {}
         }
     }
     found
+}
+
+fn is_program(unit: &Unit) -> bool {
+    matches!(&unit.kind, UnitKind::Pou(pou) if pou.kind == PouKind::Program)
 }
 
 fn foreign_code(unit: &Unit, found: &mut Vec<(TextRange, &'static str)>) {

@@ -318,13 +318,15 @@ impl Analysis<'_> {
         let modifiers = &self.unit(unit).arena[section.modifiers];
         let retained = modifiers
             .iter()
-            .find(|m| matches!(m.kind, M::Retain | M::NonRetain));
+            .find(|m| matches!(m.kind, M::Retain | M::NonRetain | M::Persistent));
         let Some(retained) = retained else { return };
         let word = retained.kind.as_str();
         let other = modifiers.iter().map(|m| m.kind).find(|kind| {
             matches!(
                 (kind, retained.kind),
-                (M::Constant, _) | (M::NonRetain, M::Retain) | (M::Retain, M::NonRetain)
+                (M::Constant, _)
+                    | (M::NonRetain, M::Retain | M::Persistent)
+                    | (M::Retain | M::Persistent, M::NonRetain)
             )
         });
         let message = match (other, section.kind) {

@@ -37,12 +37,28 @@ impl Analysis<'_> {
 
     fn check_plain(&mut self, id: PouId) {
         let word = self.kind_word(id);
+        self.check_members_of_function(id);
         for modifier in [ModifierKind::Abstract, ModifierKind::Final] {
             if self.is(id, modifier) {
                 let span = self.pou(id).span;
                 let message = format!("a {word} cannot be {}", modifier.as_str());
                 self.error(Code::E1048, span, message);
             }
+        }
+    }
+
+    /// A function has no instance that members could work on.
+    fn check_members_of_function(&mut self, id: PouId) {
+        if self.pou(id).kind != PouKind::Function {
+            if !self.pou(id).members.is_empty() {
+                self.check_properties(id);
+            }
+            return;
+        }
+        for (name, member) in self.pou(id).members.clone() {
+            let (text, span) = (self.text(name), self.pou(member).span);
+            let message = format!("`{text}` cannot belong to a function, which has no instances");
+            self.error(Code::E1011, span, message);
         }
     }
 

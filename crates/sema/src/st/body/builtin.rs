@@ -14,6 +14,7 @@ enum Builtin {
     Adr,
     SizeOf,
     IsValidRef,
+    Query,
     Refused(&'static str),
 }
 
@@ -56,12 +57,7 @@ const BUILTINS: [(&str, Builtin); 22] = [
         "__POUNAME",
         Builtin::Refused("programs do not know their text"),
     ),
-    (
-        "__QUERYINTERFACE",
-        Builtin::Refused(
-            "`target ?= value` does it: the target is NULL if the value is of another type",
-        ),
-    ),
+    ("__QUERYINTERFACE", Builtin::Query),
     (
         "__QUERYPOINTER",
         Builtin::Refused("`target ?= value` does it, with a reference to the block"),
@@ -109,24 +105,45 @@ impl Body<'_, '_> {
             self.report(diagnostic.note(*why));
             return Some(Operand::error(range));
         }
-        let given: Vec<Argument> = self.arena()[arguments].to_vec();
-        let [
-            Argument {
-                kind: ArgumentKind::Positional,
-                value: Some(value),
-                ..
-            },
-        ] = given[..]
-        else {
-            let message = format!("{word} takes one argument, by position");
-            return Some(self.error(Message::E3021, range, message));
-        };
-        Some(match builtin {
-            Builtin::Adr => self.reference_to(value, ReferenceKind::Pointer, range),
-            Builtin::SizeOf => self.size_of(value, range),
-            Builtin::IsValidRef => self.is_valid_reference(value, range),
-            Builtin::Refused(_) => unreachable!("reported above"),
+        let given = self.arena()[arguments].iter();
+        let given = given.filter(|argument| argument.kind == ArgumentKind::Positional);
+        let given: Vec<st::Id<st::Expr>> = given.filter_map(|argument| argument.value).collect();
+        let complete = given.len() == arguments.len();
+        Some(match (builtin, &given[..]) {
+            (Builtin::Adr, &[value]) if complete => {
+                self.reference_to(value, ReferenceKind::Pointer, range)
+            }
+            (Builtin::SizeOf, &[value]) if complete => self.size_of(value, range),
+            (Builtin::IsValidRef, &[value]) if complete => self.is_valid_reference(value, range),
+            (Builtin::Query, &[value, target]) if complete => {
+                self.query_interface(value, target, range)
+            }
+            _ => {
+                let count = if *builtin == Builtin::Query {
+                    "two arguments"
+                } else {
+                    "one argument"
+                };
+                let message = format!("{word} takes {count}, by position");
+                self.error(Message::E3021, range, message)
+            }
         })
+    }
+
+    /// `__QUERYINTERFACE(value, target)`: an attempt, and whether it succeeds.
+    fn query_interface(
+        &mut self,
+        value: st::Id<st::Expr>,
+        target: st::Id<st::Expr>,
+        range: TextRange,
+    ) -> Operand {
+        self.attempt(target, value, range);
+        if self.an.found.has_errors() {
+            return Operand::error(range);
+        }
+        let target = self.place(target, None);
+        let null = Operand::constant(Const::Null, TypeId::NULL, range);
+        self.binary_on(st::BinaryOp::NotEqual, target, null, range, None)
     }
 
     /// `SIZEOF(x)`, `SIZEOF(type)`.
