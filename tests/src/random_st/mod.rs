@@ -43,8 +43,8 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            statements: 5,
-            functions: 2,
+            statements: 8,
+            functions: 3,
             blocks: 2,
         }
     }

@@ -2,9 +2,9 @@
 //! after every scan.
 
 use super::{Options, random_program};
-use crate::differential::{Agreement, compare_engines, interpreter};
+use crate::differential::{Agreement, Difference, Subject, compare_engines, interpreter};
 use crate::rng::Rng;
-use crate::stimulus::random_stimulus;
+use crate::stimulus::{ScanInput, random_stimulus};
 use iecc_diag::{Diagnostics, Severity, render_text};
 use iecc_driver::{FrontOptions, KeptLibrary, OnFault};
 use iecc_ir::{Module, Region, verify};
@@ -70,7 +70,11 @@ pub fn check(
 ) -> Result<Outcome, String> {
     let checked = catch_unwind(AssertUnwindSafe(|| {
         let module = module(library, text, policy)?;
-        compare(&module, seed)
+        let outcome = compare(&module, seed)?;
+        if policy == OnFault::Trap && outcome.faults == 0 {
+            same_without_faults(library, text, &module, seed)?;
+        }
+        Ok(outcome)
     }));
     checked.unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
@@ -97,38 +101,53 @@ fn module(library: &KeptLibrary, text: &str, policy: OnFault) -> Result<Module, 
 /// machine code.
 fn compare(module: &Module, seed: u64) -> Result<Outcome, String> {
     let mut optimised = module.clone();
-    run_pipeline(
-        &mut optimised,
-        SOFTWARE,
-        &Settings::default(),
-        &mut |_, _| {},
-    )
-    .expect("the passes exist");
-    let stimulus = random_stimulus(module, &mut Rng::new(seed), SCANS);
-    compare_engines(
-        module,
-        &mut interpreter(module),
-        &mut interpreter(&optimised),
-        Agreement::All,
-        &stimulus,
-    )
-    .map_err(|difference| format!("passes change it: {difference}"))?;
+    let settings = Settings::default();
+    run_pipeline(&mut optimised, SOFTWARE, &settings, &mut |_, _| {}).expect("the passes exist");
+    same(module, &mut interpreter(&optimised), Agreement::All, seed)
+        .map_err(|difference| format!("passes change it: {difference}"))?;
     let verified = verify(&optimised).map_err(|errors| format!("unverified {}", errors[0]))?;
     let mut jit = Jit::new(verified).map_err(|errors| format!("untranslated {errors:?}"))?;
-    compare_engines(
-        module,
-        &mut interpreter(module),
-        &mut jit,
-        Agreement::All,
-        &stimulus,
-    )
-    .map_err(|difference| format!("jit differs: {difference}"))?;
+    same(module, &mut jit, Agreement::All, seed)
+        .map_err(|difference| format!("jit differs: {difference}"))?;
     let mut reference = interpreter(module);
     let mut outputs = region_bytes(module, Region::Output);
+    let stimulus = stimulus(module, seed);
     let scans = stimulus.iter();
     let ended = scans.map(|scan| reference.step(scan.now_ns, &scan.inputs, &mut outputs));
     Ok(Outcome {
         faults: ended.filter(Result::is_err).count(),
         scans: SCANS,
     })
+}
+
+fn stimulus(module: &Module, seed: u64) -> Vec<ScanInput> {
+    random_stimulus(module, &mut Rng::new(seed), SCANS)
+}
+
+/// Another engine does what the interpreter does with the module.
+fn same(
+    module: &Module,
+    other: &mut dyn Subject,
+    agreement: Agreement,
+    seed: u64,
+) -> Result<(), Difference> {
+    let reference = &mut interpreter(module);
+    compare_engines(module, reference, other, agreement, &stimulus(module, seed))
+}
+
+/// What runs without a fault gives the same outputs where faults do not stop.
+fn same_without_faults(
+    library: &KeptLibrary,
+    text: &str,
+    trapping: &Module,
+    seed: u64,
+) -> Result<(), String> {
+    let going_on = module(library, text, OnFault::Continue)?;
+    same(
+        trapping,
+        &mut interpreter(&going_on),
+        Agreement::Outputs,
+        seed,
+    )
+    .map_err(|difference| format!("policies differ: {difference}"))
 }

@@ -227,7 +227,11 @@ impl Generator<'_> {
     pub(super) fn block_unit(&mut self, index: usize) {
         let start = self.draft.position();
         let base = self.units.len() - 1;
-        let extends = base >= self.standard && self.rng.one_in(2);
+        // A block with open arrays cannot be extended yet.
+        let open = |param: &Param| matches!(param.ty, Type::Open(_));
+        let body = self.units[base].body.as_ref();
+        let closed = body.is_some_and(|body| !body.params.iter().any(open));
+        let extends = base >= self.standard && closed && self.rng.one_in(2);
         let mut signature = self.signature(&format!("Block{index}"), None, true);
         if extends {
             return self.derived_block(base, &signature.name);

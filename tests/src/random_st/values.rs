@@ -80,7 +80,13 @@ impl Generator<'_> {
                     this.operand(Type::Elementary(base), depth);
                 }
                 Type::Enumeration(_) if depth > 0 => this.selection(ty, depth - 1),
-                Type::Text { .. } | Type::Enumeration(_) => {
+                // A literal as the only argument of a function would be computed at compile time.
+                Type::Text { wide, .. } => {
+                    this.put(if wide { "TO_WSTRING(" } else { "TO_STRING(" });
+                    this.operand(Type::INT, 0);
+                    this.put(")");
+                }
+                Type::Enumeration(_) => {
                     let literal = this.literal(ty);
                     this.put(&literal);
                 }
