@@ -4,8 +4,10 @@
 //! literals take that type. After a message a piece counts as of the error type, which goes with
 //! everything, so one mistake gives one message.
 
+mod arguments;
 mod assertion;
 mod bits_as_numbers;
+mod block_call;
 mod builtin;
 mod call;
 mod coerce;
@@ -21,6 +23,7 @@ mod generic;
 mod initial_reference;
 mod intrinsic;
 mod library;
+mod library_units;
 mod literal;
 mod mock;
 mod object;
