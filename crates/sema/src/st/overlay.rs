@@ -186,7 +186,15 @@ impl Analysis<'_> {
                 },
             ],
             Elementary::Usint => vec![PathStep::Index(byte)],
-            _ => vec![PathStep::Bytes {
+            Elementary::Sint
+            | Elementary::Int
+            | Elementary::Uint
+            | Elementary::Dint
+            | Elementary::Udint
+            | Elementary::Lint
+            | Elementary::Ulint
+            | Elementary::Real
+            | Elementary::Lreal => vec![PathStep::Bytes {
                 offset: byte,
                 ty: of,
             }],

@@ -15,7 +15,13 @@ impl Analysis<'_> {
         let units = (0..).map(UnitId).zip(&self.units);
         let mut configurations = units.filter_map(|(id, unit)| match &unit.unit.kind {
             UnitKind::Configuration(configuration) => Some((id, &**configuration)),
-            _ => None,
+            UnitKind::Types { .. }
+            | UnitKind::Pou(_)
+            | UnitKind::Test(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => None,
         });
         let first = configurations.next();
         let others: Vec<_> = configurations.collect();
@@ -193,7 +199,15 @@ impl Analysis<'_> {
                 _ if var.partly.is_some() => self.hir.names.push((name, place)),
                 SectionKind::Input => self.points(&name, place.clone(), var.ty, true),
                 SectionKind::Output => self.points(&name, place.clone(), var.ty, false),
-                _ => self.hir.names.push((name, place)),
+                SectionKind::Var
+                | SectionKind::InOut
+                | SectionKind::Temp
+                | SectionKind::External
+                | SectionKind::Global
+                | SectionKind::Access
+                | SectionKind::Config
+                | SectionKind::Static
+                | SectionKind::Instance => self.hir.names.push((name, place)),
             }
         }
     }

@@ -93,7 +93,12 @@ impl Analysis<'_> {
                     kind: pou.kind,
                 });
             }
-            _ => return None,
+            UnitKind::Types { .. }
+            | UnitKind::Configuration(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => return None,
         };
         let member = |index: u32| &unit.arena[whole.members][index as usize];
         let function = PouKind::Function;
@@ -115,7 +120,7 @@ impl Analysis<'_> {
                 Member::Property(property) => {
                     let (accessor, result) = match pou.part {
                         Part::Getter(_) => (property.get, Some(property.ty)),
-                        _ => (property.set, None),
+                        Part::Whole | Part::Member(_) | Part::Setter(_) => (property.set, None),
                     };
                     accessor.map(|accessor| WrittenPou {
                         sections: accessor.sections,
@@ -274,7 +279,13 @@ impl Analysis<'_> {
         };
         let test = match &self.unit(unit).kind {
             UnitKind::Test(test) => Some(test.kind.as_str()),
-            _ => None,
+            UnitKind::Types { .. }
+            | UnitKind::Pou(_)
+            | UnitKind::Configuration(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => None,
         };
         let passed = matches!(section.kind, S::Input | S::Output | S::InOut);
         if !allowed || test.is_some() && passed {
@@ -426,7 +437,16 @@ impl Analysis<'_> {
                 SectionKind::Input | SectionKind::Output | SectionKind::Var if instances => {
                     Storage::Field(field)
                 }
-                _ => Storage::Local,
+                SectionKind::Var
+                | SectionKind::Input
+                | SectionKind::Output
+                | SectionKind::Temp
+                | SectionKind::External
+                | SectionKind::Global
+                | SectionKind::Access
+                | SectionKind::Config
+                | SectionKind::Static
+                | SectionKind::Instance => Storage::Local,
             };
             let edge = var.edge.is_some();
             let storage = match storage {
@@ -438,7 +458,10 @@ impl Analysis<'_> {
                     field += 1 + u32::from(edge);
                     Storage::Field(field - 1 - u32::from(edge))
                 }
-                other => other,
+                other @ (Storage::Local
+                | Storage::Global(_)
+                | Storage::Const(_)
+                | Storage::Located(_)) => other,
             };
             self.pous[id.index()].vars[index].storage = storage;
         }

@@ -38,7 +38,15 @@ impl Body<'_, '_> {
                         refs[*position as usize - 1] = Some(path);
                     }
                 }
-                _ => {}
+                SectionKind::Var
+                | SectionKind::Output
+                | SectionKind::Temp
+                | SectionKind::External
+                | SectionKind::Global
+                | SectionKind::Access
+                | SectionKind::Config
+                | SectionKind::Static
+                | SectionKind::Instance => {}
             }
         }
         self.require_in_outs(pou, &matched, range);

@@ -11,29 +11,6 @@ use iecc_ast::st::BinaryOp;
 use iecc_source::TextRange;
 use std::cmp::Ordering;
 
-/// The comparison that an operator is.
-pub(super) fn comparison(op: BinaryOp) -> Option<CompareOp> {
-    match op {
-        BinaryOp::Equal => Some(CompareOp::Equal),
-        BinaryOp::NotEqual => Some(CompareOp::NotEqual),
-        BinaryOp::Less => Some(CompareOp::Less),
-        BinaryOp::LessEqual => Some(CompareOp::LessEqual),
-        BinaryOp::Greater => Some(CompareOp::Greater),
-        BinaryOp::GreaterEqual => Some(CompareOp::GreaterEqual),
-        BinaryOp::Power
-        | BinaryOp::Multiply
-        | BinaryOp::Divide
-        | BinaryOp::Modulo
-        | BinaryOp::Add
-        | BinaryOp::Subtract
-        | BinaryOp::And
-        | BinaryOp::Xor
-        | BinaryOp::Or
-        | BinaryOp::AndThen
-        | BinaryOp::OrElse => None,
-    }
-}
-
 impl Body<'_, '_> {
     /// Two operands compared; `compared` is what `op` means.
     pub(super) fn compare(

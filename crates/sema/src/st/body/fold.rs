@@ -1,10 +1,10 @@
 //! Arithmetic on constants: whole numbers exactly, reals in the width of their type.
 
 use super::{Body, Operand};
+use crate::hir::Arithmetic;
 use crate::st::constant::{Const, round_to};
 use crate::st::elementary::El;
 use crate::st::types::TypeId;
-use iecc_ast::st::BinaryOp;
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
@@ -12,7 +12,7 @@ impl Body<'_, '_> {
     /// `left op right` in a type, or in that of literals.
     pub(super) fn fold_arithmetic(
         &mut self,
-        op: BinaryOp,
+        op: Arithmetic,
         left: &Operand,
         right: &Operand,
         ty: TypeId,
@@ -36,7 +36,7 @@ impl Body<'_, '_> {
             )))
         } else {
             match (a, b) {
-                (Const::Int(_), Const::Int(0)) if op == BinaryOp::Divide => {
+                (Const::Int(_), Const::Int(0)) if op == Arithmetic::Divide => {
                     return self.error(Message::E2028, right.range, "division by zero");
                 }
                 (Const::Int(a), Const::Int(b)) => fold_int(op, a, b).map(Const::Int),
@@ -90,48 +90,24 @@ pub(super) fn as_real(value: &Const) -> f64 {
     }
 }
 
-fn fold_real(op: BinaryOp, a: f64, b: f64) -> f64 {
+fn fold_real(op: Arithmetic, a: f64, b: f64) -> f64 {
     match op {
-        BinaryOp::Add => a + b,
-        BinaryOp::Subtract => a - b,
-        BinaryOp::Multiply => a * b,
-        BinaryOp::Divide => a / b,
-        BinaryOp::Modulo
-        | BinaryOp::Power
-        | BinaryOp::And
-        | BinaryOp::Xor
-        | BinaryOp::Or
-        | BinaryOp::AndThen
-        | BinaryOp::OrElse
-        | BinaryOp::Less
-        | BinaryOp::LessEqual
-        | BinaryOp::Greater
-        | BinaryOp::GreaterEqual
-        | BinaryOp::Equal
-        | BinaryOp::NotEqual => unreachable!("no arithmetic on reals"),
+        Arithmetic::Add => a + b,
+        Arithmetic::Subtract => a - b,
+        Arithmetic::Multiply => a * b,
+        Arithmetic::Divide => a / b,
+        Arithmetic::Modulo => unreachable!("MOD takes integers"),
     }
 }
 
 /// `a op b`, if that fits 128 bits; MOD by 0 is 0 by definition.
-pub(super) fn fold_int(op: BinaryOp, a: i128, b: i128) -> Option<i128> {
+pub(super) fn fold_int(op: Arithmetic, a: i128, b: i128) -> Option<i128> {
     match op {
-        BinaryOp::Add => a.checked_add(b),
-        BinaryOp::Subtract => a.checked_sub(b),
-        BinaryOp::Multiply => a.checked_mul(b),
-        BinaryOp::Divide => a.checked_div(b),
-        BinaryOp::Modulo if b == 0 => Some(0),
-        BinaryOp::Modulo => a.checked_rem(b),
-        BinaryOp::Power
-        | BinaryOp::And
-        | BinaryOp::Xor
-        | BinaryOp::Or
-        | BinaryOp::AndThen
-        | BinaryOp::OrElse
-        | BinaryOp::Less
-        | BinaryOp::LessEqual
-        | BinaryOp::Greater
-        | BinaryOp::GreaterEqual
-        | BinaryOp::Equal
-        | BinaryOp::NotEqual => unreachable!("no arithmetic"),
+        Arithmetic::Add => a.checked_add(b),
+        Arithmetic::Subtract => a.checked_sub(b),
+        Arithmetic::Multiply => a.checked_mul(b),
+        Arithmetic::Divide => a.checked_div(b),
+        Arithmetic::Modulo if b == 0 => Some(0),
+        Arithmetic::Modulo => a.checked_rem(b),
     }
 }

@@ -91,7 +91,15 @@ impl Body<'_, '_> {
                     let operand = self.place(value, None);
                     given.push((var, operand));
                 }
-                _ => {
+                SectionKind::Var
+                | SectionKind::Input
+                | SectionKind::Temp
+                | SectionKind::External
+                | SectionKind::Global
+                | SectionKind::Access
+                | SectionKind::Config
+                | SectionKind::Static
+                | SectionKind::Instance => {
                     let operand = self.expr(value, Some(var.ty));
                     given.push((var, operand));
                 }
@@ -214,7 +222,17 @@ impl Body<'_, '_> {
                     after.push((var.name, place, var.ty));
                     Some(path)
                 }
-                _ => Some(self.aggregate_argument(callee, var, find(var.name), range)),
+                SectionKind::Var
+                | SectionKind::Input
+                | SectionKind::Temp
+                | SectionKind::External
+                | SectionKind::Global
+                | SectionKind::Access
+                | SectionKind::Config
+                | SectionKind::Static
+                | SectionKind::Instance => {
+                    Some(self.aggregate_argument(callee, var, find(var.name), range))
+                }
             };
             let Some(path) = path else {
                 return Operand {

@@ -1,6 +1,6 @@
 //! Operations that the library names and the compiler knows.
 
-use super::compare::comparison;
+use super::operator::compares;
 use super::{Body, Operand, OperandKind};
 use crate::hir::CompareOp;
 use crate::hir::code::{
@@ -26,7 +26,7 @@ impl Body<'_, '_> {
         want: Option<TypeId>,
     ) -> Operand {
         if let Some(op) = binary_intrinsic(name) {
-            if comparison(op).is_some() && operands.len() > 2 {
+            if compares(op) && operands.len() > 2 {
                 return self.chain(op, operands, range);
             }
             if operands.len() < 2 {

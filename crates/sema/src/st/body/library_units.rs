@@ -20,7 +20,9 @@ impl Analysis<'_> {
         defs.iter()
             .filter_map(|def| match def {
                 crate::st::signature::Def::Pou(pou) => Some(*pou),
-                _ => None,
+                crate::st::signature::Def::Type(_)
+                | crate::st::signature::Def::Global(_)
+                | crate::st::signature::Def::Namespace(_) => None,
             })
             .collect()
     }

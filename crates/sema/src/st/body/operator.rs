@@ -1,14 +1,56 @@
 //! Operators: which types they take, what type comes out, and what they are for constants.
 
-use super::compare::comparison;
 use super::{Body, Operand, OperandKind};
 use crate::hir::code::{BinaryOp as Op, Conversion, ExprId, ExprKind, UnaryOp as Unary};
+use crate::hir::{Arithmetic, CompareOp, Logical};
 use crate::st::constant::Const;
 use crate::st::elementary::{El, Family};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::st::{self, BinaryOp, UnaryOp};
 use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::TextRange;
+
+/// What an operator between two operands does.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Class {
+    /// Computes with numbers and times.
+    Arithmetic(Arithmetic),
+    /// Works on each bit.
+    Logical(Logical),
+    /// Compares.
+    Compare(CompareOp),
+    /// `**`, a function of the library.
+    Power,
+    /// Evaluates its right side only if it counts.
+    Lazy,
+}
+
+/// What an operator does.
+pub(super) fn class(op: BinaryOp) -> Class {
+    match op {
+        BinaryOp::Add => Class::Arithmetic(Arithmetic::Add),
+        BinaryOp::Subtract => Class::Arithmetic(Arithmetic::Subtract),
+        BinaryOp::Multiply => Class::Arithmetic(Arithmetic::Multiply),
+        BinaryOp::Divide => Class::Arithmetic(Arithmetic::Divide),
+        BinaryOp::Modulo => Class::Arithmetic(Arithmetic::Modulo),
+        BinaryOp::And => Class::Logical(Logical::And),
+        BinaryOp::Or => Class::Logical(Logical::Or),
+        BinaryOp::Xor => Class::Logical(Logical::Xor),
+        BinaryOp::Equal => Class::Compare(CompareOp::Equal),
+        BinaryOp::NotEqual => Class::Compare(CompareOp::NotEqual),
+        BinaryOp::Less => Class::Compare(CompareOp::Less),
+        BinaryOp::LessEqual => Class::Compare(CompareOp::LessEqual),
+        BinaryOp::Greater => Class::Compare(CompareOp::Greater),
+        BinaryOp::GreaterEqual => Class::Compare(CompareOp::GreaterEqual),
+        BinaryOp::Power => Class::Power,
+        BinaryOp::AndThen | BinaryOp::OrElse => Class::Lazy,
+    }
+}
+
+/// Whether an operator compares.
+pub(super) fn compares(op: BinaryOp) -> bool {
+    matches!(class(op), Class::Compare(_))
+}
 
 impl Body<'_, '_> {
     pub(super) fn unary(
@@ -135,7 +177,7 @@ impl Body<'_, '_> {
         want: Option<TypeId>,
     ) -> Operand {
         // What a comparison is used for says nothing about its operands.
-        let inner = want.filter(|_| comparison(op).is_none());
+        let inner = want.filter(|_| !compares(op));
         if matches!(op, BinaryOp::AndThen | BinaryOp::OrElse) {
             return self.short_circuit(op, left, right, range);
         }
@@ -156,29 +198,16 @@ impl Body<'_, '_> {
         if left.is_error() || right.is_error() {
             return Operand::error(range);
         }
-        if let Some(compared) = comparison(op) {
-            let (left, right) = self.numbers_as_durations(left, right);
-            let (left, right) = self.zero_as_null(left, right);
-            return self.compare(op, compared, left, right, range);
-        }
-        match op {
-            BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
-                self.bitwise(op, left, right, range, want)
+        match class(op) {
+            Class::Compare(compared) => {
+                let (left, right) = self.numbers_as_durations(left, right);
+                let (left, right) = self.zero_as_null(left, right);
+                self.compare(op, compared, left, right, range)
             }
-            BinaryOp::Add
-            | BinaryOp::Subtract
-            | BinaryOp::Multiply
-            | BinaryOp::Divide
-            | BinaryOp::Modulo => self.arithmetic(op, left, right, range, want),
-            BinaryOp::Power => self.power(left, right, range, want),
-            BinaryOp::Equal
-            | BinaryOp::NotEqual
-            | BinaryOp::Less
-            | BinaryOp::LessEqual
-            | BinaryOp::Greater
-            | BinaryOp::GreaterEqual
-            | BinaryOp::AndThen
-            | BinaryOp::OrElse => unreachable!("handled before"),
+            Class::Logical(logical) => self.bitwise(op, logical, left, right, range, want),
+            Class::Arithmetic(what) => self.arithmetic(op, what, left, right, range, want),
+            Class::Power => self.power(left, right, range, want),
+            Class::Lazy => unreachable!("handled before"),
         }
     }
 
@@ -212,6 +241,7 @@ impl Body<'_, '_> {
     fn bitwise(
         &mut self,
         op: BinaryOp,
+        logical: Logical,
         left: Operand,
         right: Operand,
         range: TextRange,
@@ -239,17 +269,17 @@ impl Body<'_, '_> {
         let el = a.common(b).expect("bit strings widen to one another");
         let ty = TypeId::of(el);
         if let (Some(Const::Int(a)), Some(Const::Int(b))) = (left.as_const(), right.as_const()) {
-            let value = match op {
-                BinaryOp::And => a & b,
-                BinaryOp::Or => a | b,
-                _ => a ^ b,
+            let value = match logical {
+                Logical::And => a & b,
+                Logical::Or => a | b,
+                Logical::Xor => a ^ b,
             };
             return Operand::constant(Const::Int(value), ty, range);
         }
-        let op = match op {
-            BinaryOp::And => Op::And,
-            BinaryOp::Or => Op::Or,
-            _ => Op::Xor,
+        let op = match logical {
+            Logical::And => Op::And,
+            Logical::Or => Op::Or,
+            Logical::Xor => Op::Xor,
         };
         let (left, right) = (self.as_scalar(&left, ty), self.as_scalar(&right, ty));
         let value = self.add_expr(ExprKind::Binary(op, left, right), el.storage(), range);
@@ -259,6 +289,7 @@ impl Body<'_, '_> {
     fn arithmetic(
         &mut self,
         op: BinaryOp,
+        what: Arithmetic,
         left: Operand,
         right: Operand,
         range: TextRange,
@@ -267,45 +298,47 @@ impl Body<'_, '_> {
         if self.pointer_arithmetic(op, &left, &right, range) {
             return Operand::error(range);
         }
-        let (left, right) = match op {
-            BinaryOp::Add | BinaryOp::Subtract => self.numbers_as_durations(left, right),
-            _ => (left, right),
+        let (left, right) = match what {
+            Arithmetic::Add | Arithmetic::Subtract => self.numbers_as_durations(left, right),
+            Arithmetic::Multiply | Arithmetic::Divide | Arithmetic::Modulo => (left, right),
         };
-        if let Some(result) = self.divided_durations(op, &left, &right, range) {
+        if let Some(result) = self.divided_durations(what, &left, &right, range) {
             return result;
         }
-        if let Some(result) = self.time_arithmetic(op, &left, &right, range) {
+        if let Some(result) = self.time_arithmetic(op, what, &left, &right, range) {
             return result;
         }
         let Some(ty) = self.number_type(op, &left, &right, want, range) else {
             return Operand::error(range);
         };
         if left.as_const().is_some() && right.as_const().is_some() {
-            return self.fold_arithmetic(op, &left, &right, ty, range);
+            return self.fold_arithmetic(what, &left, &right, ty, range);
         }
         let el = self
             .an
             .types
             .elementary(ty)
             .expect("computed operands have a type");
-        if self.divides_by_zero(op, el, &right) {
+        if self.divides_by_zero(what, el, &right) {
             return self.error(Message::E2028, right.range, "division by zero");
         }
-        let hir_op = match op {
-            BinaryOp::Add => Op::Add,
-            BinaryOp::Subtract => Op::Subtract,
-            BinaryOp::Multiply => Op::Multiply,
-            BinaryOp::Modulo => Op::Modulo,
-            _ if el.is_real() || right.as_const().is_some() => Op::DivideUnchecked,
-            _ => Op::Divide,
+        let hir_op = match what {
+            Arithmetic::Add => Op::Add,
+            Arithmetic::Subtract => Op::Subtract,
+            Arithmetic::Multiply => Op::Multiply,
+            Arithmetic::Modulo => Op::Modulo,
+            Arithmetic::Divide if el.is_real() || right.as_const().is_some() => Op::DivideUnchecked,
+            Arithmetic::Divide => Op::Divide,
         };
         let (left, right) = (self.as_scalar(&left, ty), self.as_scalar(&right, ty));
         let value = self.add_expr(ExprKind::Binary(hir_op, left, right), el.storage(), range);
         Operand::value(value, ty, range)
     }
 
-    pub(super) fn divides_by_zero(&self, op: BinaryOp, el: El, right: &Operand) -> bool {
-        op == BinaryOp::Divide && !el.is_real() && matches!(right.as_const(), Some(Const::Int(0)))
+    pub(super) fn divides_by_zero(&self, what: Arithmetic, el: El, right: &Operand) -> bool {
+        what == Arithmetic::Divide
+            && !el.is_real()
+            && matches!(right.as_const(), Some(Const::Int(0)))
     }
 
     /// The type in which two numbers are computed with; a message if there is none.
@@ -323,9 +356,10 @@ impl Body<'_, '_> {
             let fits = |el: El| self.counts(el) || (el.is_real() && op != BinaryOp::Modulo);
             if !untyped && !el.is_some_and(fits) {
                 let name = self.type_name(operand.ty);
-                let message = match op {
-                    BinaryOp::Modulo => format!("MOD takes integers, not {name}"),
-                    _ => format!("`{}` takes numbers, not {name}", op.as_str()),
+                let message = if op == BinaryOp::Modulo {
+                    format!("MOD takes integers, not {name}")
+                } else {
+                    format!("`{}` takes numbers, not {name}", op.as_str())
                 };
                 self.error(Message::E2027, operand.range, message);
                 return None;

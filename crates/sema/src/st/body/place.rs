@@ -594,7 +594,16 @@ fn own_rights(var: &Var) -> Rights {
     }
     match var.section {
         SectionKind::Input => Rights::OwnInput,
-        _ => Rights::All,
+        SectionKind::Var
+        | SectionKind::Output
+        | SectionKind::InOut
+        | SectionKind::Temp
+        | SectionKind::External
+        | SectionKind::Global
+        | SectionKind::Access
+        | SectionKind::Config
+        | SectionKind::Static
+        | SectionKind::Instance => Rights::All,
     }
 }
 
@@ -605,6 +614,15 @@ fn outside_rights(var: &Var) -> Rights {
     }
     match var.section {
         SectionKind::Output => Rights::OtherOutput,
-        _ => Rights::All,
+        SectionKind::Var
+        | SectionKind::Input
+        | SectionKind::InOut
+        | SectionKind::Temp
+        | SectionKind::External
+        | SectionKind::Global
+        | SectionKind::Access
+        | SectionKind::Config
+        | SectionKind::Static
+        | SectionKind::Instance => Rights::All,
     }
 }

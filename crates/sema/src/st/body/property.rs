@@ -202,7 +202,9 @@ impl Body<'_, '_> {
                     ..read
                 }
             }
-            kind => Operand { kind, ..read },
+            kind @ (OperandKind::Error | OperandKind::Const(_) | OperandKind::Value(_)) => {
+                Operand { kind, ..read }
+            }
         }
     }
 

@@ -315,7 +315,9 @@ impl Body<'_, '_> {
         let OperandKind::Place(place) = &operand.kind else {
             let (code, why) = match operand.kind {
                 OperandKind::Value(_) => (Message::E3006, "this is a value, not a variable"),
-                _ => (Message::E2006, "a constant cannot be changed"),
+                OperandKind::Error | OperandKind::Const(_) | OperandKind::Place(_) => {
+                    (Message::E2006, "a constant cannot be changed")
+                }
             };
             self.error(code, operand.range, why);
             return None;

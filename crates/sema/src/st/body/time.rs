@@ -3,7 +3,7 @@
 use super::fold::fold_int;
 use super::{Body, Operand};
 use crate::hir::code::{BinaryOp as Op, ExprId, ExprKind, PathId, Root, StmtKind};
-use crate::hir::{Elementary, Type};
+use crate::hir::{Arithmetic, Elementary, Type};
 use crate::st::constant::Const;
 use crate::st::elementary::{El, Family};
 use crate::st::types::TypeId;
@@ -55,6 +55,7 @@ impl Body<'_, '_> {
     pub(super) fn time_arithmetic(
         &mut self,
         op: BinaryOp,
+        what: Arithmetic,
         left: &Operand,
         right: &Operand,
         range: TextRange,
@@ -65,13 +66,13 @@ impl Body<'_, '_> {
         if !is_time(a) && !is_time(b) {
             return None;
         }
-        let result = time_result(op, a, b);
+        let result = time_result(what, a, b);
         let Some((result, wrap_day)) = result else {
-            let scaled = match op {
-                BinaryOp::Multiply if is_time(a) => Some((left, right)),
-                BinaryOp::Multiply => Some((right, left)),
-                BinaryOp::Divide => Some((left, right)),
-                _ => None,
+            let scaled = match what {
+                Arithmetic::Multiply if is_time(a) => Some((left, right)),
+                Arithmetic::Multiply => Some((right, left)),
+                Arithmetic::Divide => Some((left, right)),
+                Arithmetic::Add | Arithmetic::Subtract | Arithmetic::Modulo => None,
             };
             if let Some((time, factor)) = scaled
                 && self
@@ -80,14 +81,14 @@ impl Body<'_, '_> {
                     .elementary(time.ty)
                     .is_some_and(El::is_duration)
             {
-                return Some(self.scale_time(op, time, factor, range));
+                return Some(self.scale_time(op, what, time, factor, range));
             }
             self.no_common_type(op, left, right, range);
             return Some(Operand::error(range));
         };
         let ty = TypeId::of(result);
         if let (Some(Const::Int(a)), Some(Const::Int(b))) = (left.as_const(), right.as_const()) {
-            let value = fold_int(op, *a, *b).expect("sums fit");
+            let value = fold_int(what, *a, *b).expect("sums fit");
             let day = 86_400_000_000_000;
             let value = if wrap_day {
                 value.rem_euclid(day)
@@ -96,7 +97,7 @@ impl Body<'_, '_> {
             };
             return Some(self.folded(Const::Int(value), ty, range));
         }
-        let hir_op = if op == BinaryOp::Add {
+        let hir_op = if what == Arithmetic::Add {
             Op::Add
         } else {
             Op::Subtract
@@ -123,6 +124,7 @@ impl Body<'_, '_> {
     fn scale_time(
         &mut self,
         op: BinaryOp,
+        what: Arithmetic,
         time: &Operand,
         factor: &Operand,
         range: TextRange,
@@ -145,7 +147,7 @@ impl Body<'_, '_> {
             let wide = self.convert_value(wide, real, range);
             let factor = self.as_scalar(factor, TypeId::of(factor_el));
             let factor = self.convert_value(factor, real, range);
-            let hir_op = if op == BinaryOp::Multiply {
+            let hir_op = if what == Arithmetic::Multiply {
                 Op::Multiply
             } else {
                 Op::DivideUnchecked
@@ -155,20 +157,22 @@ impl Body<'_, '_> {
             let value = self.convert_value(value, el, range);
             return Operand::value(value, ty, range);
         }
-        if self.divides_by_zero(op, factor_el, factor) {
+        if self.divides_by_zero(what, factor_el, factor) {
             return self.error(Message::E2028, factor.range, "division by zero");
         }
         if let (Some(Const::Int(a)), Some(Const::Int(b))) = (time.as_const(), factor.as_const()) {
-            return self.folded_int(fold_int(op, *a, *b), ty, range);
+            return self.folded_int(fold_int(what, *a, *b), ty, range);
         }
         let constant = factor.as_const().is_some();
         let factor = self.as_scalar(factor, TypeId::of(factor_el));
         let factor = self.convert_value(factor, el, range);
         let time_value = self.raw(time);
-        let hir_op = match op {
-            BinaryOp::Multiply => Op::Multiply,
-            _ if constant => Op::DivideUnchecked,
-            _ => Op::Divide,
+        let hir_op = if what == Arithmetic::Multiply {
+            Op::Multiply
+        } else if constant {
+            Op::DivideUnchecked
+        } else {
+            Op::Divide
         };
         let kind = ExprKind::Binary(hir_op, time_value, factor);
         let value = self.add_expr(kind, storage, range);
@@ -177,7 +181,7 @@ impl Body<'_, '_> {
 }
 
 /// What comes out of a sum or difference of times, and whether it stays within a day.
-fn time_result(op: BinaryOp, a: Option<El>, b: Option<El>) -> Option<(El, bool)> {
+fn time_result(op: Arithmetic, a: Option<El>, b: Option<El>) -> Option<(El, bool)> {
     let (a, b) = (a?, b?);
     let long = a.is_long_time();
     // Short and long families do not mix, but a long operand may have a short duration beside it.
@@ -190,22 +194,22 @@ fn time_result(op: BinaryOp, a: Option<El>, b: Option<El>) -> Option<(El, bool)>
         El::Time
     };
     match (op, a.family(), b.family()) {
-        (BinaryOp::Add | BinaryOp::Subtract, Family::Duration, Family::Duration) => {
+        (Arithmetic::Add | Arithmetic::Subtract, Family::Duration, Family::Duration) => {
             Some((duration, false))
         }
-        (BinaryOp::Add | BinaryOp::Subtract, Family::TimeOfDay, Family::Duration)
+        (Arithmetic::Add | Arithmetic::Subtract, Family::TimeOfDay, Family::Duration)
             if long || b == El::Time =>
         {
             Some((a, true))
         }
-        (BinaryOp::Add | BinaryOp::Subtract, Family::DateTime, Family::Duration)
+        (Arithmetic::Add | Arithmetic::Subtract, Family::DateTime, Family::Duration)
             if long || b == El::Time =>
         {
             Some((a, false))
         }
-        (BinaryOp::Subtract, Family::Date, Family::Date)
-        | (BinaryOp::Subtract, Family::TimeOfDay, Family::TimeOfDay)
-        | (BinaryOp::Subtract, Family::DateTime, Family::DateTime)
+        (Arithmetic::Subtract, Family::Date, Family::Date)
+        | (Arithmetic::Subtract, Family::TimeOfDay, Family::TimeOfDay)
+        | (Arithmetic::Subtract, Family::DateTime, Family::DateTime)
             if a == b =>
         {
             Some((duration, false))

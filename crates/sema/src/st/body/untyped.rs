@@ -3,12 +3,13 @@
 
 use super::bits_as_numbers::counts_as;
 use super::{Body, Operand};
+use crate::hir::Arithmetic;
 use crate::hir::code::{BinaryOp as Op, ExprKind};
 use crate::st::constant::Const;
 use crate::st::elementary::El;
 use crate::st::types::TypeId;
 use iecc_ast::Symbol;
-use iecc_ast::st::{self, BinaryOp, ExprKind as Written};
+use iecc_ast::st::{self, ExprKind as Written};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
@@ -60,16 +61,16 @@ impl Body<'_, '_> {
     /// The quotient of two durations, and what is left of the division.
     pub(super) fn divided_durations(
         &mut self,
-        op: BinaryOp,
+        op: Arithmetic,
         left: &Operand,
         right: &Operand,
         range: TextRange,
     ) -> Option<Operand> {
         let (a, b) = (self.duration(left)?, self.duration(right)?);
         let ty = match op {
-            BinaryOp::Divide => TypeId::of(El::Lint),
-            BinaryOp::Modulo => TypeId::of(if a.is_long_time() { a } else { b }),
-            _ => return None,
+            Arithmetic::Divide => TypeId::of(El::Lint),
+            Arithmetic::Modulo => TypeId::of(if a.is_long_time() { a } else { b }),
+            Arithmetic::Add | Arithmetic::Subtract | Arithmetic::Multiply => return None,
         };
         if !self.an.options.codesys {
             return None;
@@ -80,9 +81,10 @@ impl Body<'_, '_> {
         if let (Some(Const::Int(a)), Some(Const::Int(b))) = (left.as_const(), right.as_const()) {
             return Some(self.folded_int(super::fold::fold_int(op, *a, *b), ty, range));
         }
-        let op = match op {
-            BinaryOp::Modulo => Op::Modulo,
-            _ => Op::Divide,
+        let op = if op == Arithmetic::Modulo {
+            Op::Modulo
+        } else {
+            Op::Divide
         };
         let (left, right) = (self.raw(left), self.raw(right));
         let storage = El::Lint.storage();

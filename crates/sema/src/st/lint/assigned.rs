@@ -52,7 +52,15 @@ impl Analysis<'_> {
         let section = match var.section {
             SectionKind::Temp => true,
             SectionKind::Var => function,
-            _ => false,
+            SectionKind::Input
+            | SectionKind::Output
+            | SectionKind::InOut
+            | SectionKind::External
+            | SectionKind::Global
+            | SectionKind::Access
+            | SectionKind::Config
+            | SectionKind::Static
+            | SectionKind::Instance => false,
         };
         let scalar = self.types.elementary(var.ty).is_some();
         section && scalar && var.initial.is_none() && var.storage == Storage::Local

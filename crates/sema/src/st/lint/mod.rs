@@ -90,7 +90,14 @@ impl<'a> Analysis<'a> {
     pub(crate) fn written_body(&self, id: PouId) -> Option<st::Block> {
         match &self.unit(self.pou(id).unit).kind {
             UnitKind::Pou(whole) if whole.kind == PouKind::Interface => None,
-            _ => self.written_statements(id),
+            UnitKind::Types { .. }
+            | UnitKind::Pou(_)
+            | UnitKind::Configuration(_)
+            | UnitKind::Test(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => self.written_statements(id),
         }
     }
 
@@ -101,7 +108,12 @@ impl<'a> Analysis<'a> {
         let whole = match &unit.kind {
             UnitKind::Pou(whole) => whole,
             UnitKind::Test(test) => return Some(test.body),
-            _ => return None,
+            UnitKind::Types { .. }
+            | UnitKind::Configuration(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => return None,
         };
         match pou.part {
             Part::Whole => Some(whole.body),

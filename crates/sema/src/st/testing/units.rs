@@ -67,7 +67,13 @@ impl Analysis<'_> {
     fn written_test(&self, unit: UnitId) -> st::Test {
         match &self.unit(unit).kind {
             UnitKind::Test(test) => **test,
-            _ => unreachable!("only tests are noted"),
+            UnitKind::Types { .. }
+            | UnitKind::Pou(_)
+            | UnitKind::Configuration(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => unreachable!("only tests are noted"),
         }
     }
 
