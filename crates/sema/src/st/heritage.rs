@@ -228,19 +228,25 @@ impl Analysis<'_> {
         *self.lineage(id).last().expect("begins with the unit")
     }
 
+    /// The unit as it is written, without the bounds of arrays that a call gives.
+    fn written(&self, id: PouId) -> PouId {
+        self.pou(id).template.unwrap_or(id)
+    }
+
     /// Whether instances of a class or block have a type number.
     pub(crate) fn is_numbered(&self, id: PouId) -> bool {
-        self.families.numbered.contains(&self.root_of(id))
+        let root = self.root_of(self.written(id));
+        self.families.numbered.contains(&root)
     }
 
     /// Whether the structure of a class or block begins with the type number.
     pub(crate) fn holds_number(&self, id: PouId) -> bool {
-        self.families.numbered.contains(&id)
+        self.families.numbered.contains(&self.written(id))
     }
 
     /// The number of the type of an instance.
     pub(crate) fn type_number(&self, id: PouId) -> u32 {
-        self.families.numbers[&id]
+        self.families.numbers[&self.written(id)]
     }
 
     /// How many steps lead from an instance to the part of it that is a base.

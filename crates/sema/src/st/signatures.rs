@@ -388,6 +388,10 @@ impl Analysis<'_> {
             return;
         };
         for mut var in inherited {
+            let open = &self.pou(id).bindings.open;
+            if let Some((_, ty)) = open.iter().find(|(name, _)| *name == var.name) {
+                var.ty = *ty;
+            }
             var.range = written.name.range;
             var.storage = Storage::Local;
             self.add_var(id, var);

@@ -161,8 +161,6 @@ impl Analysis<'_> {
         pou.state = crate::st::signature::State::Declared;
         pou.vars.clear();
         pou.by_name.clear();
-        pou.extends.clear();
-        pou.implements.clear();
         let made = self.add_pou(pou);
         self.instances.insert(key, made);
         self.complete(made);

@@ -4,7 +4,7 @@ use super::call::Callee;
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{Call, ExprId, ExprKind, PathStep, Root, StmtKind};
 use crate::hir::{self, Elementary, Type};
-use crate::st::signature::{Part, PouId, Storage, Var};
+use crate::st::signature::{Bindings, Part, PouId, Storage, Var};
 use crate::st::signatures::CallShape;
 use crate::st::types::TypeKind;
 use iecc_ast::Symbol;
@@ -486,11 +486,28 @@ impl Body<'_, '_> {
         self.error(Message::E3003, range, message);
     }
 
+    /// The body of a base for the arrays that this one is for.
+    fn with_own_arrays(&mut self, body: PouId) -> PouId {
+        if !self.an.has_open_arrays(body) {
+            return body;
+        }
+        let mut bindings = Bindings::default();
+        for var in &self.an.pou(body).vars {
+            let open = matches!(self.an.types.base(var.ty), TypeKind::OpenArray { .. });
+            let own = self.pou.and_then(|pou| self.an.pou(pou).var(var.name));
+            if let Some(own) = own.filter(|_| open) {
+                bindings.open.push((var.name, self.an.types.strip(own.ty)));
+            }
+        }
+        self.an.instance(body, bindings)
+    }
+
     /// The base body gets the same in-outs.
     fn call_base(&mut self, run: Run, range: TextRange) {
         let Run::On { body, instance } = run else {
             unreachable!("the type of the base is known")
         };
+        let body = self.with_own_arrays(body);
         let shape = self.an.call_shape(body);
         let mut refs = vec![self.path_of(&instance, range)];
         for index in shape.refs {
