@@ -6,17 +6,23 @@
 //! than [`FREE_WORK`] instructions. Everything else runs uncounted. In a metered function the entry
 //! and every jump back pay for what runs until the next payment, so the budget of a scan bounds its
 //! work, also with irreducible loops: every cycle contains a jump that goes back in reverse
-//! postorder.
+//! postorder. A loop that surely goes round so often, and not very often, is part of the work of its function:
+//! it is paid for ahead. A loop that counts is paid for where it is entered, with as many rounds as there can be, and
+//! at most twice as many as there are.
 
 use cranelift_entity::{EntityRef, EntitySet, SecondaryMap};
-use iecc_ir::analysis::{Cfg, Dominators, Loops};
+use iecc_ir::analysis::{Cfg, Counted, Dominators, LocalRanges, Loop, Loops};
 use iecc_ir::{
     Block, FuncId, Function, InstData, Layout, MemType, Module, Place, RefParam, Root, Terminator,
+    Value,
 };
 use std::collections::BTreeMap;
 
 /// Most instructions a function without loops may execute uncounted, its callees included.
 const FREE_WORK: u64 = 1 << 22;
+
+/// Most instructions of a loop that is paid for ahead.
+const AHEAD_WORK: u64 = 1 << 20;
 
 /// Bytes that are moved or made 0 for the work of one instruction.
 const BYTES_PER_WORK: u64 = 64;
@@ -58,6 +64,20 @@ pub(crate) struct Facts {
     pub(crate) absent_refs: EntitySet<RefParam>,
     /// Instructions to pay for at the end of a block that jumps back.
     pub(crate) payments: BTreeMap<Block, u64>,
+    /// What to pay at the end of a block that enters loops.
+    pub(crate) entries: BTreeMap<Block, Vec<Entry>>,
+    /// What its integers can be, if it counts or computes indices.
+    pub(crate) ranges: Option<LocalRanges>,
+}
+
+/// A way into a loop whose rounds are paid for there.
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    pub(crate) counted: Counted,
+    /// What the counter is at first.
+    pub(crate) first: Value,
+    /// Instructions of a round.
+    pub(crate) work: u64,
 }
 
 /// The functions of a scan.
@@ -108,7 +128,12 @@ impl Plan {
 
     fn examine(&mut self, module: &Module, layout: &Layout, func: &Function) -> Facts {
         let cfg = Cfg::new(func);
+        let dominators = Dominators::new(&cfg);
+        let loops = Loops::new(&cfg, &dominators);
         let mut facts = Facts::default();
+        if !loops.is_empty() || has_computed_indices(func) {
+            facts.ranges = Some(LocalRanges::new(func, &cfg, &dominators, &loops));
+        }
         let (_, local_bytes) = layout.locals(&module.types, func);
         facts.locals = self.place_locals(local_bytes);
         facts.work = local_bytes / BYTES_PER_WORK;
@@ -123,8 +148,9 @@ impl Plan {
                 facts.metered |= self.facts[callee].metered;
             }
         }
-        facts.payments = self.payments(func, &cfg, facts.work, &own);
-        facts.metered |= !facts.payments.is_empty() || facts.work > FREE_WORK;
+        self.add_payments(&mut facts, func, &cfg, &loops, &own);
+        facts.metered |= !facts.payments.is_empty() || !facts.entries.is_empty();
+        facts.metered |= facts.work > FREE_WORK;
         facts.can_fault |= facts.metered;
         facts
     }
@@ -150,40 +176,41 @@ impl Plan {
     }
 
     /// Natural loops pay for their blocks, jumps back into irreducible ones for the whole function.
-    fn payments(
+    fn add_payments(
         &self,
+        facts: &mut Facts,
         func: &Function,
         cfg: &Cfg,
-        work: u64,
+        loops: &Loops,
         own: &dyn Fn(Block) -> u64,
-    ) -> BTreeMap<Block, u64> {
-        let mut position = SecondaryMap::with_default(0);
-        for (index, &block) in cfg.reverse_postorder().iter().enumerate() {
-            position[block] = index;
+    ) {
+        if loops.irreducible.is_some() {
+            facts.payments = payments_of_jumps_back(cfg, facts.work);
+            return;
         }
-        let mut payments = BTreeMap::new();
-        for &block in cfg.reverse_postorder() {
-            let back = |&to: &Block| position[to] <= position[block];
-            if cfg.successors(block).iter().copied().any(|to| back(&to)) {
-                payments.insert(block, work);
+        let work = |each: &Loop| {
+            let body = each.blocks.iter().map(|&b| self.block_work(func, b, own));
+            body.fold(0, u64::saturating_add)
+        };
+        for each in &loops.natural {
+            let body = work(each);
+            if let Some(ahead) = rounds(facts, loops, each).map(|n| n.saturating_mul(body))
+                && ahead <= AHEAD_WORK
+            {
+                facts.work = facts.work.saturating_add(ahead);
+                continue;
             }
-        }
-        if payments.is_empty() {
-            return payments;
-        }
-        let loops = Loops::new(cfg, &Dominators::new(cfg));
-        if loops.irreducible.is_none() {
-            payments.clear();
-            for each in &loops.natural {
-                let body = each.blocks.iter().map(|&b| self.block_work(func, b, own));
-                let body = body.fold(0, u64::saturating_add);
-                for &latch in &each.latches {
-                    let payment = payments.entry(latch).or_insert(0);
-                    *payment = body.max(*payment);
+            if let Some(entries) = entries(facts, func, cfg, each, body) {
+                for (from, entry) in entries {
+                    facts.entries.entry(from).or_default().push(entry);
                 }
+                continue;
+            }
+            for &latch in &each.latches {
+                let payment = facts.payments.entry(latch).or_insert(0);
+                *payment = body.max(*payment);
             }
         }
-        payments
     }
 
     /// Callers come first, so what `func` itself is passed is known.
@@ -238,6 +265,87 @@ impl Plan {
         };
         inherited || !place.is_static()
     }
+}
+
+/// How often a loop goes back in a call of its function: as often as it does each time it is entered, times the
+/// rounds of the loops around it. `None` if that is not the same always.
+fn rounds(facts: &Facts, loops: &Loops, each: &Loop) -> Option<u64> {
+    let around = loops.natural.iter();
+    let around = around.filter(|outer| outer.blocks.contains(&each.header));
+    let mut rounds = 1u64;
+    for outer in around {
+        let trips = facts.ranges.as_ref()?.trips(outer.header)?;
+        let times = trips.most + u64::from(outer.header != each.header);
+        rounds = rounds.checked_mul(times).filter(|_| trips.is_exact)?;
+    }
+    Some(rounds)
+}
+
+/// The ways into a loop that is counted, if each of them enters it in one way.
+fn entries(
+    facts: &Facts,
+    func: &Function,
+    cfg: &Cfg,
+    each: &Loop,
+    work: u64,
+) -> Option<Vec<(Block, Entry)>> {
+    let counted = facts.ranges.as_ref()?.counted(each.header)?;
+    // So the price of all rounds is a number of 64 bits.
+    let is_narrow = func.value_type(counted.param).bits() <= 32;
+    if !is_narrow || work > FREE_WORK {
+        return None;
+    }
+    let params = &func.block(each.header).params;
+    let index = params.iter().position(|&param| param == counted.param)?;
+    let outside = |from: &&Block| cfg.is_reachable(**from) && !each.blocks.contains(from);
+    let ways_in = cfg.predecessors(each.header).iter().filter(outside);
+    let entry = |&from: &Block| {
+        let targets = func.terminator(from).targets();
+        let mut targets = targets
+            .into_iter()
+            .filter(|target| target.block == each.header);
+        let (target, None) = (targets.next()?, targets.next()) else {
+            return None;
+        };
+        let first = target.args[index];
+        Some((
+            from,
+            Entry {
+                counted,
+                first,
+                work,
+            },
+        ))
+    };
+    ways_in.map(entry).collect()
+}
+
+fn payments_of_jumps_back(cfg: &Cfg, work: u64) -> BTreeMap<Block, u64> {
+    let mut position = SecondaryMap::with_default(0);
+    for (index, &block) in cfg.reverse_postorder().iter().enumerate() {
+        position[block] = index;
+    }
+    let blocks = cfg.reverse_postorder().iter();
+    let jumps_back = |&&block: &&Block| {
+        let mut targets = cfg.successors(block).iter();
+        targets.any(|&to| position[to] <= position[block])
+    };
+    blocks
+        .filter(jumps_back)
+        .map(|&block| (block, work))
+        .collect()
+}
+
+/// Whether a place has an index by value.
+fn has_computed_indices(func: &Function) -> bool {
+    let blocks = func.layout.iter().map(|&block| func.block(block));
+    let mut insts = blocks.flat_map(|block| &block.insts);
+    insts.any(|&inst| {
+        func.inst(inst)
+            .places()
+            .iter()
+            .any(|place| !place.is_static())
+    })
 }
 
 /// The work of a block without that of the functions it calls.

@@ -432,3 +432,56 @@ fn a_program_of_nothing_runs() {
     );
     assert_eq!(jit.step(0, &[], &mut []), Ok(()));
 }
+
+/// `j := x; WHILE j <= 1000 DO n := n + 1; j := j + y`, y from 1 to 7: the rounds are paid for before the loop, and
+/// at most twice.
+#[test]
+fn rounds_that_are_counted_ahead_are_within_the_budget() {
+    let text = "scan @s
+fn @s[]() -> () {
+b0:
+  v0: i32 = load input.x
+  v1: i32 = load input.y
+  v2: i32 = const 7
+  v3: i32 = and v1, v2
+  v4: i32 = const 1
+  v5: i32 = or v3, v4
+  v6: i32 = const 1000
+  v7: i32 = const 0
+  v15: i1 = slt v0, v7
+  v16: i32 = select v15, v7, v0
+  jump b1(v16, v7)
+b1(v8: i32, v9: i32):
+  v10: i1 = sle v8, v6
+  brif v10, b2, b3
+b2:
+  v11: i32 = add v9, v4
+  v12: i32 = add v8, v5
+  jump b1(v12, v11)
+b3:
+  store output.r, v9
+  return
+}
+";
+    // 0, 1, ... 1000 are 1001 rounds; 0, 7, ... 994 are 143; 1000 is one; 1001 none.
+    for (x, y, rounds) in [
+        (0, 1, 1001),
+        (0, 7, 143),
+        (1000, 1, 1),
+        (1001, 1, 0),
+        (i32::MAX, 1, 0),
+    ] {
+        let mut jit = program("", text);
+        assert_eq!(scan(&mut jit, x, y), Ok(rounds), "x {x}, y {y}");
+    }
+    // A round is four instructions, and the two branches.
+    for (budget, y, ends) in [
+        (20_000, 1, true),
+        (5_000, 1, false),
+        (2_500, 7, true),
+        (700, 7, false),
+    ] {
+        let mut jit = program("", text).with_budget(budget);
+        assert_eq!(scan(&mut jit, 0, y).is_ok(), ends, "budget {budget}, y {y}");
+    }
+}

@@ -39,15 +39,36 @@ pub(crate) fn inline(module: &mut Module) {
     Inliner::new(MAX_FUNCTION, MAX_LOCAL_BYTES).run(module, &|_, _| true);
 }
 
-/// Inlines calls of small functions, and of larger ones that are called in one place only.
+/// Inlines calls of small functions, and of larger ones that are called in one place only; but for loops,
+/// which want all registers for themselves.
 pub(crate) fn inline_small(module: &mut Module) {
     let mut count: SecondaryMap<FuncId, u32> = SecondaryMap::new();
-    for func in module.funcs.values() {
+    let mut loops = EntitySet::<FuncId>::new();
+    for (id, func) in module.funcs.iter() {
         functions::calls(func).for_each(|callee| count[callee] += 1);
+        if goes_back(func) {
+            loops.insert(id);
+        }
     }
     Inliner::new(SMALL_FUNCTION, SMALL_LOCALS).run(module, &|callee, size| {
-        size <= SMALL || (count[callee] == 1 && size <= SMALL_IF_CALLED_ONCE)
+        let is_single = count[callee] == 1 && !loops.contains(callee);
+        size <= SMALL || (is_single && size <= SMALL_IF_CALLED_ONCE)
     });
+}
+
+/// Whether a function has a loop.
+fn goes_back(func: &Function) -> bool {
+    let cfg = Cfg::new(func);
+    let mut position = SecondaryMap::with_default(0);
+    for (index, &block) in cfg.reverse_postorder().iter().enumerate() {
+        position[block] = index;
+    }
+    let mut blocks = cfg.reverse_postorder().iter();
+    blocks.any(|&from| {
+        cfg.successors(from)
+            .iter()
+            .any(|&to| position[to] <= position[from])
+    })
 }
 
 /// Inlines calls of functions that are one block of few instructions.

@@ -13,6 +13,7 @@
     reason = "rewriting picks a few shapes; every other one stays as it is"
 )]
 
+mod bounds;
 mod cse;
 mod dce;
 mod early_compare;
@@ -22,6 +23,7 @@ mod functions;
 mod if_convert;
 mod inline;
 mod late_clear;
+mod loops;
 mod promote;
 mod range;
 mod range_fold;
@@ -89,6 +91,18 @@ pub const PASSES: &[Pass] = &[
         what: "the same, but loads again what was loaded long before",
         why_here: "instead of cse where values cost registers",
         run: |module, _| cse::cse_near(module),
+    },
+    Pass {
+        name: "bounds",
+        what: "decides comparisons by how loops count",
+        why_here: "after cse, which knows where a branch has decided the same before; folding drops the branches",
+        run: |module, _| bounds::bounds(module),
+    },
+    Pass {
+        name: "loops",
+        what: "turns WHILE loops around, and writes the body of short counted loops several times",
+        why_here: "after bounds and folding, which leave one block of a body",
+        run: |module, _| loops::loops(module),
     },
     Pass {
         name: "dce",
@@ -174,7 +188,9 @@ pub const SOFTWARE: &[&str] = &[
     "inline_straight",
     "fold",
     "cse_near",
+    "bounds",
     "fold",
+    "loops",
     "dce",
 ];
 

@@ -2,14 +2,15 @@
 //!
 //! An index by value is compared with its bound and replaced by 0 when outside, so every address
 //! lies in its region whatever the program computes; whether all indices were inside decides if
-//! what is loaded counts and if a store happens. The same goes for a reference that stands for an
+//! what is loaded counts and if a store happens. An index that loops and branches keep inside needs no
+//! comparison. The same goes for a reference that stands for an
 //! element outside its array: it is passed as a null pointer, and the state takes its place.
 
 use super::{Translator, clif_type};
 use crate::context::ScanContext;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, types};
-use iecc_ir::{ArrayId, Index, MemType, Place, Projection, Root, Type, Value};
+use iecc_ir::{ArrayId, BinaryOp, Index, InstData, MemType, Place, Projection, Root, Type, Value};
 
 /// Where a place lies.
 #[derive(Clone)]
@@ -35,8 +36,10 @@ impl Translator<'_, '_> {
             let MemType::Scalar(ty) = address.ty else {
                 panic!("bits are in integers")
             };
-            let inside = self.inside(bit, ty.bits());
-            self.require(&mut address, inside);
+            if !self.is_inside(bit, ty.bits()) {
+                let inside = self.inside(bit, ty.bits());
+                self.require(&mut address, inside);
+            }
         }
         address
     }
@@ -156,21 +159,53 @@ impl Translator<'_, '_> {
         match index {
             Index::Const(index) => address.offset += (u64::from(index) * size) as i32,
             Index::Value(index) => {
-                let inside = self.inside(index, array.len);
-                let index = self.value(index);
-                let zero = self.ins().iconst(types::I32, 0);
-                let index = self.ins().select(inside, index, zero);
+                let (index, ahead) = self.index_and_constant(index, array.len);
+                address.offset += (ahead * size) as i32;
+                let mut number = self.value(index);
+                if ahead == 0 && !self.is_inside(index, array.len) {
+                    let inside = self.inside(index, array.len);
+                    let zero = self.ins().iconst(types::I32, 0);
+                    number = self.ins().select(inside, number, zero);
+                    self.require(address, inside);
+                }
                 let pointer = self.pointer;
                 let distance = match pointer {
-                    types::I32 => index,
-                    _ => self.ins().uextend(pointer, index),
+                    types::I32 => number,
+                    _ => self.ins().uextend(pointer, number),
                 };
                 let size = self.ins().iconst(pointer, size as i64);
                 let distance = self.ins().imul(distance, size);
                 address.base = self.ins().iadd(address.base, distance);
-                self.require(address, inside);
             }
         }
+    }
+
+    /// `i + 3`, if it is inside and i not negative, is i and 3 elements more: machine code adds constants for nothing.
+    fn index_and_constant(&self, index: Value, len: u32) -> (Value, u64) {
+        let sum = match self.func.def_inst(index) {
+            Some(InstData::Binary {
+                op: BinaryOp::Add,
+                args: [x, y],
+            }) => self.func.constant(*y).map(|constant| (*x, constant)),
+            Some(_) | None => None,
+        };
+        let Some((x, constant)) = sum else {
+            return (index, 0);
+        };
+        let fits = self.facts.ranges.as_ref().is_some_and(|ranges| {
+            let range = ranges.at(self.func, x, self.at);
+            let last = range.hi.checked_add_unsigned(constant);
+            range.lo >= 0 && last.is_some_and(|last| last < i64::from(len))
+        });
+        if fits { (x, constant) } else { (index, 0) }
+    }
+
+    /// Whether loops and branches keep an index inside.
+    fn is_inside(&self, index: Value, len: u32) -> bool {
+        self.facts.ranges.as_ref().is_some_and(|ranges| {
+            let range = ranges.at(self.func, index, self.at);
+            range.lo >= 0 && range.hi < i64::from(len)
+        })
     }
 
     /// Read as unsigned, negative indices are above every bound.

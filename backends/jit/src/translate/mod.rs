@@ -126,6 +126,8 @@ struct Translator<'t, 'm> {
     local_slot: Option<clif::StackSlot>,
     /// What is left of the budget, in metered functions.
     budget: Variable,
+    /// The block of the program that is being translated.
+    at: Block,
     /// What NaN each value may be.
     nan: NanClasses,
     /// Floats in memory that may be the wrong NaN.
@@ -167,6 +169,7 @@ pub(crate) fn translate(
         local_offsets: program.layout.locals(&program.module.types, func).0,
         local_slot: None,
         budget: builder.declare_var(types::I64),
+        at: func.entry(),
         nan: NanClasses::new(),
         waiting: nan::Waiting::default(),
         fault_exit: None,
@@ -203,6 +206,7 @@ impl Translator<'_, '_> {
         }
         self.clear_locals();
         for &block in cfg.reverse_postorder() {
+            self.at = block;
             if block != entry {
                 let target = self.block(block);
                 self.builder.switch_to_block(target);

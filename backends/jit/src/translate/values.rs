@@ -12,6 +12,28 @@ struct Division {
     remainder: bool,
 }
 
+/// Stands for a positive divisor d of 32 bits: with `2^(l - 1) < d < 2^l`, `shift = 31 + l` and
+/// `factor = 2^shift / d` rounded up, `x * factor / 2^shift` rounded down is `x / d` rounded down if x is not negative,
+/// and one less than the truncated quotient if it is (Granlund, Montgomery 1994, figure 5.2).
+struct Multiplier {
+    factor: u64,
+    shift: u32,
+}
+
+impl Multiplier {
+    /// Powers of two are shifts.
+    fn serves(division: &Division, ty: Type, divisor: u64) -> bool {
+        let is_positive = divisor < 1 << 31 && !divisor.is_power_of_two();
+        division.signed && ty == Type::I32 && is_positive
+    }
+
+    fn of(divisor: u64) -> Self {
+        let shift = 31 + (u64::BITS - divisor.leading_zeros());
+        let factor = (1u64 << shift) / divisor + 1;
+        Self { factor, shift }
+    }
+}
+
 impl Translator<'_, '_> {
     pub(super) fn unary(&mut self, op: UnaryOp, arg: Value) -> clif::Value {
         let (ty, x) = (self.func.value_type(arg), self.value(arg));
@@ -88,11 +110,37 @@ impl Translator<'_, '_> {
             (0, false) => self.constant(ty, 0),
             (_, true) if minus_one => self.constant(ty, 0),
             (_, false) if minus_one => self.ins().ineg(x),
+            (_, remainder) if Multiplier::serves(division, ty, divisor) => {
+                self.divide_by_multiplying(x, divisor, remainder)
+            }
             (_, _) => {
                 let y = self.constant(ty, divisor);
                 self.plain_division(division, x, y)
             }
         }
+    }
+
+    /// A product of 64 bits, which no instruction wants in registers of its own.
+    fn divide_by_multiplying(
+        &mut self,
+        x: clif::Value,
+        divisor: u64,
+        remainder: bool,
+    ) -> clif::Value {
+        let multiplier = Multiplier::of(divisor);
+        let wide = self.ins().sextend(types::I64, x);
+        let factor = self.ins().iconst(types::I64, multiplier.factor as i64);
+        let product = self.ins().imul(wide, factor);
+        let floor = self.ins().sshr_imm_u(product, i64::from(multiplier.shift));
+        let floor = self.ins().ireduce(types::I32, floor);
+        // Rounded down; negative numbers want to be rounded up.
+        let sign = self.ins().sshr_imm_u(x, 31);
+        let quotient = self.ins().isub(floor, sign);
+        if !remainder {
+            return quotient;
+        }
+        let whole = self.ins().imul_imm_s(quotient, divisor as i64);
+        self.ins().isub(x, whole)
     }
 
     /// The machine divides by 1 where it would trap, and the result is replaced.

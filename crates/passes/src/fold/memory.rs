@@ -9,7 +9,7 @@ use iecc_ir::{
 
 /// The structs of the regions.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Regions {
+pub(crate) struct Regions {
     state: StructId,
     input: StructId,
     output: StructId,
@@ -17,7 +17,7 @@ pub(super) struct Regions {
 
 impl Regions {
     /// Those of a module.
-    pub(super) fn of(module: &Module) -> Self {
+    pub(crate) fn of(module: &Module) -> Self {
         Self {
             state: module.state,
             input: module.input,

@@ -19,6 +19,7 @@ mod simplify;
 
 use iecc_ir::eval::{eval_binary, eval_compare, eval_convert, eval_unary};
 use iecc_ir::{Function, InstData, Module, Type, TypeTable, Value};
+pub(crate) use memory::Regions;
 
 /// Rounds per function. Each makes the function smaller or leaves it; the bound keeps contrived
 /// programs from costing quadratic time.
@@ -26,13 +27,14 @@ const MAX_ROUNDS: usize = 6;
 
 /// Folds every function.
 pub(crate) fn fold(module: &mut Module) {
-    let regions = memory::Regions::of(module);
+    let regions = Regions::of(module);
     for func in module.funcs.values_mut() {
         fold_function(&module.types, regions, func);
     }
 }
 
-fn fold_function(types: &TypeTable, regions: memory::Regions, func: &mut Function) {
+/// Folds one function.
+pub(crate) fn fold_function(types: &TypeTable, regions: Regions, func: &mut Function) {
     for _ in 0..MAX_ROUNDS {
         let constants = propagate::propagate(func);
         let algebra = simplify::simplify(types, regions, func);

@@ -6,8 +6,7 @@
 //! depth; beyond the bound the range without assumptions stands in, which is sound.
 
 use super::Analysis;
-use super::interval;
-use iecc_ir::analysis::Range;
+use iecc_ir::analysis::{Range, interval};
 use iecc_ir::{BinaryOp, CompareOp, ConvertOp, InstData, Root, Type, UnaryOp, Value};
 use std::collections::BTreeMap;
 

@@ -10,12 +10,11 @@
 //! `elapsed` and `now` are any number; `step` is at most what the caller says a scan can bring.
 
 mod case;
-mod interval;
 
 use crate::scan_form::{Leaf, ScanForm};
 use case::{Case, DEPTH};
 use cranelift_entity::SecondaryMap;
-use iecc_ir::analysis::{Range, Ranges};
+use iecc_ir::analysis::{Range, Ranges, interval};
 use iecc_ir::{CompareOp, Function, InstData, Module, Projection, Root, Type, Value};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};

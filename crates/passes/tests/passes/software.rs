@@ -214,3 +214,165 @@ fn straight_functions_are_inlined_wherever_they_are_called() {
         assert_eq!(found, calls);
     }
 }
+
+/// `FOR i := 0 TO 3 DO a[i] := i`: no index is outside, so no way leads to the fault.
+#[test]
+fn an_index_that_counts_within_its_array_is_not_checked() {
+    let scan = |last: i32, body: &str, fault: &str| {
+        format!(
+            "fn @scan[]() -> () {{
+b0:
+  v0: i32 = const 0
+  v1: i32 = const 4
+  v2: i32 = const 1
+  v3: i32 = const {last}
+  jump b1(v0)
+b1(v4: i32):
+{body}  store state.a[v4], v4
+  v6: i32 = add v4, v2
+  v7: i1 = sle v6, v3
+  brif v7, b1(v6), b3
+b3:
+  return
+{fault}}}
+"
+        )
+    };
+    let check_index = "  v5: i1 = ult v4, v1\n  brif v5, b2, b4\nb2:\n";
+    let fault = "b4:\n  fault index\n";
+    let checked = |last| scan(last, check_index, fault);
+    let unchecked = scan(3, "", "").replace("  v1: i32 = const 4\n", "");
+    check(&["bounds", "fold", "dce"], HEADER, &checked(3), &unchecked);
+    let module = optimised(
+        &["bounds", "fold", "dce"],
+        &format!("{HEADER}{}", checked(4)),
+    );
+    assert!(print_module(&module).contains("ult"), "4 is outside");
+}
+
+/// `WHILE x < 100 DO n := x; x := x + y`, y at least 1: the condition is looked at before the loop, and behind the
+/// body, which goes back to itself.
+#[test]
+fn a_while_loop_looks_at_its_condition_behind_the_body() {
+    check(
+        &["loops", "dce"],
+        HEADER,
+        "fn @scan[]() -> () {
+b0:
+  v0: i32 = load input.x
+  v1: i32 = load state.t.n
+  v2: i32 = const 1
+  v3: i32 = or v1, v2
+  v4: i32 = const 100
+  jump b1(v0)
+b1(v5: i32):
+  v6: i32 = sub v4, v3
+  v7: i1 = slt v5, v6
+  brif v7, b2, b3(v5)
+b2:
+  store state.n, v6
+  v8: i32 = add v5, v3
+  jump b1(v8)
+b3(v9: i32):
+  store output.x, v9
+  return
+}
+",
+        "fn @scan[]() -> () {
+b0:
+  v0: i32 = load input.x
+  v1: i32 = load state.t.n
+  v2: i32 = const 1
+  v3: i32 = or v1, v2
+  v4: i32 = const 100
+  v6: i32 = sub v4, v3
+  v7: i1 = slt v0, v6
+  brif v7, b2(v0, v6), b3(v0)
+b2(v5: i32, v10: i32):
+  store state.n, v10
+  v8: i32 = add v5, v3
+  v11: i32 = sub v4, v3
+  v12: i1 = slt v8, v11
+  brif v12, b2(v8, v11), b3(v8)
+b3(v9: i32):
+  store output.x, v9
+  return
+}
+",
+    );
+}
+
+/// `FOR i := 0 TO 3 DO a[i] := x; x := i`: two bodies, what is behind the loop sees the last.
+#[test]
+fn a_short_counted_loop_has_two_bodies() {
+    check(
+        &["loops", "dce"],
+        HEADER,
+        "fn @scan[]() -> () {
+b0:
+  v0: i32 = const 0
+  v1: i32 = load input.x
+  v2: i32 = const 1
+  v3: i32 = const 3
+  jump b1(v0, v1)
+b1(v4: i32, v5: i32):
+  store state.a[v4], v5
+  v6: i32 = add v4, v2
+  v7: i1 = sle v6, v3
+  brif v7, b1(v6, v4), b2
+b2:
+  store output.x, v5
+  store state.n, v6
+  return
+}
+",
+        "fn @scan[]() -> () {
+b0:
+  v0: i32 = const 0
+  v1: i32 = load input.x
+  v2: i32 = const 1
+  v3: i32 = const 3
+  jump b1(v0, v1)
+b1(v4: i32, v5: i32):
+  store state.a[v4], v5
+  v8: i32 = add v4, v2
+  store state.a[v8], v4
+  v9: i32 = const 2
+  v6: i32 = add v4, v9
+  v7: i1 = sle v6, v3
+  brif v7, b1(v6, v8), b2
+b2:
+  store output.x, v4
+  store state.n, v6
+  return
+}
+",
+    );
+}
+
+/// Five rounds are no multiple of two or three, calls are not written twice, and a loop with a second way out does
+/// not end with a group.
+#[test]
+fn other_loops_have_one_body() {
+    for (last, exit) in [(4, "v7: i1 = sle v6, v3"), (3, "v7: i1 = slt v6, v1")] {
+        let text = format!(
+            "fn @scan[]() -> () {{
+b0:
+  v0: i32 = const 0
+  v1: i32 = load input.x
+  v2: i32 = const 1
+  v3: i32 = const {last}
+  jump b1(v0)
+b1(v4: i32):
+  store state.a[v4], v1
+  v6: i32 = add v4, v2
+  {exit}
+  brif v7, b1(v6), b2
+b2:
+  return
+}}
+"
+        );
+        check(&["loops"], HEADER, &text, &text);
+    }
+}

@@ -3,8 +3,8 @@
 //! Every function is sound: it holds all results of operands in the given ranges. Where wrapping
 //! is possible the answer is everything the type holds.
 
-use iecc_ir::analysis::Range;
-use iecc_ir::{BinaryOp, CompareOp, ConvertOp, Type, UnaryOp};
+use super::Range;
+use crate::{BinaryOp, CompareOp, ConvertOp, Type, UnaryOp};
 
 /// The range from exact bounds, or the whole type if they do not fit.
 fn exact(ty: Type, lo: i128, hi: i128) -> Range {
@@ -31,7 +31,7 @@ fn corners(ty: Type, a: Range, b: Range, f: impl Fn(i128, i128) -> i128) -> Rang
 }
 
 /// The result of a unary operation on an integer type.
-pub(super) fn unary(op: UnaryOp, ty: Type, x: Range) -> Range {
+pub fn unary(op: UnaryOp, ty: Type, x: Range) -> Range {
     match op {
         UnaryOp::Not if ty == Type::I1 => Range::new(1 - x.hi, 1 - x.lo),
         UnaryOp::Not => Range::new(!x.hi, !x.lo),
@@ -41,7 +41,7 @@ pub(super) fn unary(op: UnaryOp, ty: Type, x: Range) -> Range {
 }
 
 /// The result of a binary operation on an integer type.
-pub(super) fn binary(op: BinaryOp, ty: Type, a: Range, b: Range) -> Range {
+pub fn binary(op: BinaryOp, ty: Type, a: Range, b: Range) -> Range {
     match op {
         BinaryOp::Add => exact(
             ty,
@@ -131,7 +131,7 @@ fn remainder(a: Range, b: Range) -> Range {
 }
 
 /// The result of a comparison of integers of one type.
-pub(super) fn compare(op: CompareOp, a: Range, b: Range) -> Range {
+pub fn compare(op: CompareOp, a: Range, b: Range) -> Range {
     let known = |truth: bool| Range::constant(i64::from(truth));
     let open = Range::new(0, 1);
     let nonnegative = a.lo >= 0 && b.lo >= 0;
@@ -167,8 +167,45 @@ fn inverted(x: Range) -> Range {
     Range::new(1 - x.hi, 1 - x.lo)
 }
 
+/// What is left of `x` where `x op y` holds, y being any number of `b`; `None` if it never does.
+pub fn given(op: CompareOp, x: Range, b: Range) -> Option<Range> {
+    let (min, max) = (i64::MIN, i64::MAX);
+    let below = |top: Option<i64>| x.intersection(Range::new(min, top?));
+    let above = |bottom: Option<i64>| x.intersection(Range::new(bottom?, max));
+    match op {
+        CompareOp::Eq => x.intersection(b),
+        CompareOp::Ne => without(x, b.as_constant()),
+        CompareOp::Slt => below(b.hi.checked_sub(1)),
+        CompareOp::Sle => below(Some(b.hi)),
+        CompareOp::Sgt => above(b.lo.checked_add(1)),
+        CompareOp::Sge => above(Some(b.lo)),
+        // Unsigned, every negative number is above all others.
+        CompareOp::Ult if b.lo >= 0 => x.intersection(Range::new(0, b.hi.max(1) - 1)),
+        CompareOp::Ule if b.lo >= 0 => x.intersection(Range::new(0, b.hi)),
+        CompareOp::Ugt if x.lo >= 0 && b.lo >= 0 => above(b.lo.checked_add(1)),
+        CompareOp::Uge if x.lo >= 0 && b.lo >= 0 => above(Some(b.lo)),
+        CompareOp::Ult | CompareOp::Ule | CompareOp::Ugt | CompareOp::Uge => Some(x),
+        CompareOp::Feq
+        | CompareOp::Fne
+        | CompareOp::Flt
+        | CompareOp::Fle
+        | CompareOp::Fgt
+        | CompareOp::Fge => Some(x),
+    }
+}
+
+/// Only the ends of a range can be taken away.
+fn without(x: Range, number: Option<i64>) -> Option<Range> {
+    match number {
+        Some(number) if x.lo == number && x.hi == number => None,
+        Some(number) if x.lo == number => Some(Range::new(number + 1, x.hi)),
+        Some(number) if x.hi == number => Some(Range::new(x.lo, number - 1)),
+        Some(_) | None => Some(x),
+    }
+}
+
 /// The result of a conversion between integer types.
-pub(super) fn convert(op: ConvertOp, from: Type, to: Type, x: Range) -> Range {
+pub fn convert(op: ConvertOp, from: Type, to: Type, x: Range) -> Range {
     match op {
         ConvertOp::Sext if from == Type::I1 => Range::new(-x.hi, -x.lo),
         ConvertOp::Sext => x,
@@ -291,6 +328,32 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn what_a_comparison_leaves_is_bounded_by_the_other_side() {
+        let x = Range::new(-5, 100);
+        for (op, b, left) in [
+            (CompareOp::Slt, Range::new(3, 7), Some(Range::new(-5, 6))),
+            (CompareOp::Sge, Range::new(3, 7), Some(Range::new(3, 100))),
+            (CompareOp::Sgt, Range::constant(100), None),
+            (CompareOp::Ult, Range::constant(10), Some(Range::new(0, 9))),
+            (CompareOp::Ult, Range::new(-1, 10), Some(x)),
+            (CompareOp::Uge, Range::constant(10), Some(x)),
+            (
+                CompareOp::Ne,
+                Range::constant(100),
+                Some(Range::new(-5, 99)),
+            ),
+            (CompareOp::Ne, Range::constant(7), Some(x)),
+            (
+                CompareOp::Eq,
+                Range::new(50, 200),
+                Some(Range::new(50, 100)),
+            ),
+        ] {
+            assert_eq!(given(op, x, b), left, "{op} {b:?}");
         }
     }
 
