@@ -100,16 +100,16 @@ fn step(
     let Some(InstData::Binary { op, args: [a, b] }) = func.def_inst(next) else {
         return None;
     };
-    match op {
-        BinaryOp::Add if *a == param => Some((ranges.base(func, *b), *b)),
-        BinaryOp::Add if *b == param => Some((ranges.base(func, *a), *a)),
-        BinaryOp::Sub if *a == param => {
-            let range = ranges.base(func, *b);
-            let negated = Range::new(range.hi.checked_neg()?, range.lo.checked_neg()?);
-            Some((negated, *b))
-        }
-        _ => None,
+    if *op == BinaryOp::Add && (*a == param || *b == param) {
+        let by = if *a == param { *b } else { *a };
+        return Some((ranges.base(func, by), by));
     }
+    if *op == BinaryOp::Sub && *a == param {
+        let range = ranges.base(func, *b);
+        let negated = Range::new(range.hi.checked_neg()?, range.lo.checked_neg()?);
+        return Some((negated, *b));
+    }
+    None
 }
 
 /// How often a loop goes back to its header, if a comparison bounds that.
@@ -227,18 +227,19 @@ fn rounds(
 ) -> Option<Trips> {
     let step = counter.step;
     // How far the last number is for which the loop goes on, and whether the one behind it exists.
-    let (distance, fits) = match op {
-        CompareOp::Slt | CompareOp::Sle if step.lo > 0 => {
-            let last = i128::from(limit.hi) - i128::from(op == CompareOp::Slt);
-            let end = last.max(counter.first.hi.into()) + i128::from(step.hi);
-            (last - i128::from(counter.first.lo), end <= ty.hi.into())
-        }
-        CompareOp::Sgt | CompareOp::Sge if step.hi < 0 => {
-            let last = i128::from(limit.lo) + i128::from(op == CompareOp::Sgt);
-            let end = last.min(counter.first.lo.into()) + i128::from(step.lo);
-            (i128::from(counter.first.hi) - last, end >= ty.lo.into())
-        }
-        _ => return None,
+    let is_below = matches!(op, CompareOp::Slt | CompareOp::Sle) && step.lo > 0;
+    let is_above = matches!(op, CompareOp::Sgt | CompareOp::Sge) && step.hi < 0;
+    let excluded = i128::from(matches!(op, CompareOp::Slt | CompareOp::Sgt));
+    let (distance, fits) = if is_below {
+        let last = i128::from(limit.hi) - excluded;
+        let end = last.max(counter.first.hi.into()) + i128::from(step.hi);
+        (last - i128::from(counter.first.lo), end <= ty.hi.into())
+    } else if is_above {
+        let last = i128::from(limit.lo) + excluded;
+        let end = last.min(counter.first.lo.into()) + i128::from(step.lo);
+        (i128::from(counter.first.hi) - last, end >= ty.lo.into())
+    } else {
+        return None;
     };
     if !fits {
         // It may wrap around and go on for ever.

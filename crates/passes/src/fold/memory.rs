@@ -25,7 +25,8 @@ impl Regions {
         }
     }
 
-    fn root_type(self, func: &Function, root: Root) -> MemType {
+    /// What lies at a root.
+    pub(crate) fn root_type(self, func: &Function, root: Root) -> MemType {
         match root {
             Root::State => MemType::Struct(self.state),
             Root::Input => MemType::Struct(self.input),

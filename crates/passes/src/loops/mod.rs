@@ -1,35 +1,43 @@
 //! Loops as machine code likes them: what they do, they do in the same order as before.
 //!
+//! * `fill`: a loop that makes an array 0 is a `clear`.
 //! * `rotate`: `WHILE` looks at its condition once before the loop and then at the end of each round.
 //! * `unroll`: the body of a short loop whose rounds are counted is written several times.
 
+mod fill;
 mod rotate;
 mod unroll;
 
 use crate::fold::{Regions, fold_function};
 use iecc_ir::analysis::{Cfg, Dominators, LocalRanges, Loops};
-use iecc_ir::{Function, Module};
+use iecc_ir::{Function, Module, TypeTable};
 
 /// Rewrites the loops of every function, and folds where that changed something.
 pub(crate) fn loops(module: &mut Module) {
     let regions = Regions::of(module);
     for func in module.funcs.values_mut() {
-        if rewrite(func) {
+        if rewrite(&module.types, regions, func) {
             fold_function(&module.types, regions, func);
         }
     }
 }
 
-fn rewrite(func: &mut Function) -> bool {
+fn rewrite(types: &TypeTable, regions: Regions, func: &mut Function) -> bool {
     let cfg = Cfg::new(func);
     let loops = Loops::new(&cfg, &Dominators::new(&cfg));
     if loops.is_empty() {
         return false;
     }
+    let dominators = Dominators::new(&cfg);
+    let ranges = LocalRanges::new(func, &cfg, &dominators, &loops);
+    let filled = fill::fill(types, regions, func, &loops, &ranges);
+    let cfg = Cfg::new(func);
+    let loops = Loops::new(&cfg, &Dominators::new(&cfg));
     let rotated = rotate::rotate(func, &cfg, &loops);
     let cfg = Cfg::new(func);
     let dominators = Dominators::new(&cfg);
     let loops = Loops::new(&cfg, &dominators);
     let ranges = LocalRanges::new(func, &cfg, &dominators, &loops);
-    unroll::unroll(func, &loops, &ranges) || rotated
+    let unrolled = unroll::unroll(func, &loops, &ranges);
+    rotated || filled || unrolled
 }

@@ -376,3 +376,47 @@ b2:
         check(&["loops"], HEADER, &text, &text);
     }
 }
+
+/// `FOR i := 0 TO 3 DO a[i] := 0`, and not if it begins late, ends early, stores another number, or i is read behind it.
+#[test]
+fn a_loop_that_makes_an_array_0_clears_it() {
+    let scan = |first: i32, last: i32, number: &str, behind: &str| {
+        format!(
+            "fn @scan[]() -> () {{
+b0:
+  v0: i32 = const {first}
+  v1: i32 = const 1
+  v2: i32 = const 0
+  v3: i32 = const {last}
+  jump b1(v0)
+b1(v4: i32):
+  store state.a[v4], {number}
+  v5: i32 = add v4, v1
+  v6: i1 = sle v5, v3
+  brif v6, b1(v5), b2
+b2:
+{behind}  return
+}}
+"
+        )
+    };
+    let clears = |text: &str| {
+        let module = optimised(&["loops", "dce"], &format!("{HEADER}{text}"));
+        print_module(&module).contains("clear state.a")
+    };
+    assert!(clears(&scan(0, 3, "v2", "")));
+    for (first, last, number, behind) in [
+        (1, 3, "v2", ""),
+        (0, 2, "v2", ""),
+        (-1, 3, "v2", ""),
+        (0, 4, "v2", ""),
+        (0, 3, "v1", ""),
+        (0, 3, "v4", ""),
+        (0, 3, "v2", "  store output.x, v5\n"),
+    ] {
+        assert!(
+            !clears(&scan(first, last, number, behind)),
+            "{first} {last} {number} {behind}"
+        );
+    }
+}
