@@ -128,10 +128,11 @@ impl Plan {
 
     fn examine(&mut self, module: &Module, layout: &Layout, func: &Function) -> Facts {
         let cfg = Cfg::new(func);
-        let dominators = Dominators::new(&cfg);
-        let loops = Loops::new(&cfg, &dominators);
         let mut facts = Facts::default();
-        if !loops.is_empty() || has_computed_indices(func) {
+        let mut loops = Loops::default();
+        if goes_back(&cfg) || has_computed_indices(func) {
+            let dominators = Dominators::new(&cfg);
+            loops = Loops::new(&cfg, &dominators);
             facts.ranges = Some(LocalRanges::new(func, &cfg, &dominators, &loops));
         }
         let (_, local_bytes) = layout.locals(&module.types, func);
@@ -318,6 +319,11 @@ fn entries(
         ))
     };
     ways_in.map(entry).collect()
+}
+
+/// Whether there is a loop of any kind.
+fn goes_back(cfg: &Cfg) -> bool {
+    !payments_of_jumps_back(cfg, 0).is_empty()
 }
 
 fn payments_of_jumps_back(cfg: &Cfg, work: u64) -> BTreeMap<Block, u64> {

@@ -2,12 +2,14 @@
 //! is not compared with its bounds, nor the rounds of a loop that ends with their limit; and what a counter is
 //! behind its loop is a constant, if it is the same always.
 
+use crate::rewrite::goes_back;
 use iecc_ir::analysis::{Cfg, Dominators, LocalRanges, Loops};
 use iecc_ir::{Block, Function, InstData, Module, Terminator, Value};
 
 /// Replaces decided numbers by constants, in functions with loops.
 pub(crate) fn bounds(module: &mut Module) {
-    for func in module.funcs.values_mut() {
+    let with_loops = |func: &&mut Function| goes_back(func);
+    for func in module.funcs.values_mut().filter(with_loops) {
         let cfg = Cfg::new(func);
         let dominators = Dominators::new(&cfg);
         let loops = Loops::new(&cfg, &dominators);

@@ -8,6 +8,7 @@
 //! set for all calls of the same function, and are cleared where the callee is entered.
 
 use crate::functions;
+use crate::rewrite::goes_back;
 use cranelift_entity::{EntityRef, EntitySet, SecondaryMap, packed_option::PackedOption};
 use iecc_ir::analysis::{Cfg, Dominators, Loops};
 use iecc_ir::{
@@ -46,7 +47,7 @@ pub(crate) fn inline_small(module: &mut Module) {
     let mut loops = EntitySet::<FuncId>::new();
     for (id, func) in module.funcs.iter() {
         functions::calls(func).for_each(|callee| count[callee] += 1);
-        if goes_back(func) {
+        if size(func) > SMALL && goes_back(func) {
             loops.insert(id);
         }
     }
@@ -54,21 +55,6 @@ pub(crate) fn inline_small(module: &mut Module) {
         let is_single = count[callee] == 1 && !loops.contains(callee);
         size <= SMALL || (is_single && size <= SMALL_IF_CALLED_ONCE)
     });
-}
-
-/// Whether a function has a loop.
-fn goes_back(func: &Function) -> bool {
-    let cfg = Cfg::new(func);
-    let mut position = SecondaryMap::with_default(0);
-    for (index, &block) in cfg.reverse_postorder().iter().enumerate() {
-        position[block] = index;
-    }
-    let mut blocks = cfg.reverse_postorder().iter();
-    blocks.any(|&from| {
-        cfg.successors(from)
-            .iter()
-            .any(|&to| position[to] <= position[from])
-    })
 }
 
 /// Inlines calls of functions that are one block of few instructions.

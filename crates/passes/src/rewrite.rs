@@ -52,6 +52,25 @@ pub(crate) fn remove_unreachable(func: &mut Function) -> bool {
     func.layout.len() != before
 }
 
+/// Whether a function has a loop.
+pub(crate) fn goes_back(func: &Function) -> bool {
+    // Without branches there is none.
+    if func.layout.len() == 1 {
+        return matches!(func.terminator(func.entry()), Terminator::Jump(_));
+    }
+    let cfg = Cfg::new(func);
+    let mut position = SecondaryMap::with_default(0);
+    for (index, &block) in cfg.reverse_postorder().iter().enumerate() {
+        position[block] = index;
+    }
+    let mut blocks = cfg.reverse_postorder().iter();
+    blocks.any(|&from| {
+        cfg.successors(from)
+            .iter()
+            .any(|&to| position[to] <= position[from])
+    })
+}
+
 /// Makes all returns jump to one.
 pub(crate) fn join_returns(func: &mut Function) {
     let returns: Vec<_> = func

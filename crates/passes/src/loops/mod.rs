@@ -9,6 +9,7 @@ mod rotate;
 mod unroll;
 
 use crate::fold::{Regions, fold_function};
+use crate::rewrite::goes_back;
 use iecc_ir::analysis::{Cfg, Dominators, LocalRanges, Loops};
 use iecc_ir::{Function, Module, TypeTable};
 
@@ -16,7 +17,7 @@ use iecc_ir::{Function, Module, TypeTable};
 pub(crate) fn loops(module: &mut Module) {
     let regions = Regions::of(module);
     for func in module.funcs.values_mut() {
-        if rewrite(&module.types, regions, func) {
+        if goes_back(func) && rewrite(&module.types, regions, func) {
             fold_function(&module.types, regions, func);
         }
     }
