@@ -116,7 +116,9 @@ impl Body<'_, '_> {
                 ArgumentKind::Input(name)
                 | ArgumentKind::Output(name)
                 | ArgumentKind::NegatedOutput(name) => {
-                    parameters.iter().position(|p| p.name == name.name)?
+                    let known = parameters.iter().position(|p| p.name == name.name);
+                    let more = || extensible && self.names_the_next(&parameters, index, name.name);
+                    known.or_else(|| more().then(|| parameters.len() - 1))?
                 }
             };
             let parameter = parameters.get(position)?;
@@ -186,6 +188,24 @@ impl Body<'_, '_> {
             }
         }
         Some(bound)
+    }
+
+    /// Whether a name goes on with the numbers in those of the parameters: IN3 after IN1 and IN2, where it
+    /// stands in their order.
+    fn names_the_next(&self, parameters: &[Parameter], index: usize, name: Symbol) -> bool {
+        let Some(last) = parameters.last() else {
+            return false;
+        };
+        let last_text = self.text(last.name);
+        let base = last_text.trim_end_matches(|c: char| c.is_ascii_digit());
+        let Ok(number) = last_text[base.len()..].parse::<usize>() else {
+            return false;
+        };
+        let next = (number + index).checked_sub(parameters.len() - 1);
+        next.is_some_and(|next| {
+            self.text(name)
+                .eq_ignore_ascii_case(&format!("{base}{next}"))
+        })
     }
 
     /// The type of a generic name after one more argument. Literals leave it open.
@@ -308,6 +328,11 @@ impl Body<'_, '_> {
                 .max()
                 .map_or(0, |position| position + 1)
         {
+            if eno.is_some() {
+                let message =
+                    "ENO of a function with more inputs than it names is not compiled yet";
+                return self.error(Message::E2010, range, message);
+            }
             return self.folded_call(function, operands, range, want);
         }
         let instance = self.an.instance(function, bound.bindings);
