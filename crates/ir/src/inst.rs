@@ -3,6 +3,7 @@
 use crate::{
     BinaryOp, Block, CompareOp, ConvertOp, FaultCode, FuncId, Place, Type, UnaryOp, Value,
 };
+use smallvec::{SmallVec, smallvec};
 
 /// An instruction. Values are defined once; results are kept by the function.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -121,14 +122,17 @@ pub enum InstData {
     },
 }
 
+/// The values that something reads: seldom more than four.
+pub type Values = SmallVec<[Value; 4]>;
+
 impl InstData {
     /// Every value the instruction reads, in text order.
-    pub fn values(&self) -> Vec<Value> {
+    pub fn values(&self) -> Values {
         match self {
-            Self::Const { .. } | Self::Now | Self::Step { .. } => Vec::new(),
-            Self::Unary { arg, .. } | Self::Convert { arg, .. } => vec![*arg],
-            Self::Binary { args, .. } | Self::Compare { args, .. } => args.to_vec(),
-            Self::Select { cond, args } => vec![*cond, args[0], args[1]],
+            Self::Const { .. } | Self::Now | Self::Step { .. } => Values::new(),
+            Self::Unary { arg, .. } | Self::Convert { arg, .. } => smallvec![*arg],
+            Self::Binary { args, .. } | Self::Compare { args, .. } => Values::from_slice(args),
+            Self::Select { cond, args } => smallvec![*cond, args[0], args[1]],
             Self::Load { place }
             | Self::Elapsed { place, .. }
             | Self::Clear { place }
@@ -177,14 +181,14 @@ impl InstData {
     }
 
     /// Every place the instruction names, in text order.
-    pub fn places(&self) -> Vec<&Place> {
+    pub fn places(&self) -> SmallVec<[&Place; 2]> {
         match self {
             Self::Load { place }
             | Self::Store { place, .. }
             | Self::Clear { place }
             | Self::Address { place }
-            | Self::Elapsed { place, .. } => vec![place],
-            Self::Copy { to, from } => vec![to, from],
+            | Self::Elapsed { place, .. } => smallvec![place],
+            Self::Copy { to, from } => smallvec![to, from],
             Self::Call { refs, .. } => refs.iter().collect(),
             Self::Const { .. }
             | Self::Unary { .. }
@@ -193,19 +197,19 @@ impl InstData {
             | Self::Convert { .. }
             | Self::Select { .. }
             | Self::Now
-            | Self::Step { .. } => Vec::new(),
+            | Self::Step { .. } => SmallVec::new(),
         }
     }
 
     /// Every place the instruction names, for changes, in text order.
-    pub fn places_mut(&mut self) -> Vec<&mut Place> {
+    pub fn places_mut(&mut self) -> SmallVec<[&mut Place; 2]> {
         match self {
             Self::Load { place }
             | Self::Store { place, .. }
             | Self::Clear { place }
             | Self::Address { place }
-            | Self::Elapsed { place, .. } => vec![place],
-            Self::Copy { to, from } => vec![to, from],
+            | Self::Elapsed { place, .. } => smallvec![place],
+            Self::Copy { to, from } => smallvec![to, from],
             Self::Call { refs, .. } => refs.iter_mut().collect(),
             Self::Const { .. }
             | Self::Unary { .. }
@@ -214,7 +218,7 @@ impl InstData {
             | Self::Convert { .. }
             | Self::Select { .. }
             | Self::Now
-            | Self::Step { .. } => Vec::new(),
+            | Self::Step { .. } => SmallVec::new(),
         }
     }
 
@@ -316,48 +320,45 @@ pub enum Terminator {
 
 impl Terminator {
     /// The targets, in text order.
-    pub fn targets(&self) -> Vec<&Target> {
+    pub fn targets(&self) -> SmallVec<[&Target; 2]> {
         match self {
-            Self::Jump(target) => vec![target],
+            Self::Jump(target) => smallvec![target],
             Self::Brif {
                 then, otherwise, ..
-            } => vec![then, otherwise],
+            } => smallvec![then, otherwise],
             Self::Switch { cases, default, .. } => std::iter::once(default)
                 .chain(cases.iter().map(|(_, target)| target))
                 .collect(),
-            Self::Return(_) | Self::Fault(_) => Vec::new(),
+            Self::Return(_) | Self::Fault(_) => SmallVec::new(),
         }
     }
 
     /// The targets, for changes.
-    pub fn targets_mut(&mut self) -> Vec<&mut Target> {
+    pub fn targets_mut(&mut self) -> SmallVec<[&mut Target; 2]> {
         match self {
-            Self::Jump(target) => vec![target],
+            Self::Jump(target) => smallvec![target],
             Self::Brif {
                 then, otherwise, ..
-            } => vec![then, otherwise],
+            } => smallvec![then, otherwise],
             Self::Switch { cases, default, .. } => std::iter::once(default)
                 .chain(cases.iter_mut().map(|(_, target)| target))
                 .collect(),
-            Self::Return(_) | Self::Fault(_) => Vec::new(),
+            Self::Return(_) | Self::Fault(_) => SmallVec::new(),
         }
     }
 
     /// Every value read, target arguments included, in text order.
-    pub fn values(&self) -> Vec<Value> {
-        let own = match self {
-            Self::Brif { cond, .. } => vec![*cond],
-            Self::Switch { value, .. } => vec![*value],
-            Self::Return(values) => values.clone(),
-            Self::Jump(_) | Self::Fault(_) => Vec::new(),
+    pub fn values(&self) -> Values {
+        let mut values = match self {
+            Self::Brif { cond, .. } => smallvec![*cond],
+            Self::Switch { value, .. } => smallvec![*value],
+            Self::Return(values) => Values::from_slice(values),
+            Self::Jump(_) | Self::Fault(_) => Values::new(),
         };
-        own.into_iter()
-            .chain(
-                self.targets()
-                    .into_iter()
-                    .flat_map(|t| t.args.iter().copied()),
-            )
-            .collect()
+        for target in self.targets() {
+            values.extend_from_slice(&target.args);
+        }
+        values
     }
 
     /// Applies `f` to every value read.

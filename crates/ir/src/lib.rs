@@ -44,7 +44,7 @@ pub use function::{
     Block, BlockData, Function, Inst, Local, LocalData, RefParam, RefParamData, Value, ValueDef,
 };
 pub use image::{Image, Scalar};
-pub use inst::{InstData, Target, Terminator};
+pub use inst::{InstData, Target, Terminator, Values};
 pub use layout::{Layout, MAX_LOCAL_BYTES, MAX_REGION_BYTES};
 pub use module::{FuncId, Module, Origin, OriginData, Region};
 pub use ops::{BinaryOp, CompareOp, ConvertOp, OperandClass, UnaryOp};

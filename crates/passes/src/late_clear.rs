@@ -199,7 +199,7 @@ fn rebuild(
     for &operand in &operands {
         new.push(rebuild(editor, operand, depth - 1, known));
     }
-    if new == operands {
+    if new[..] == operands[..] {
         return value;
     }
     let mut data = data;

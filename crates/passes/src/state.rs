@@ -12,7 +12,7 @@ use crate::Settings;
 use crate::edit::replace_values;
 use crate::range::ranges;
 use crate::scan_form::{Leaf, ScanForm};
-use iecc_ir::{Function, InstData, Module, Root, Value};
+use iecc_ir::{Function, InstData, Module, Root, Value, Values};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Runs the pass.
@@ -122,7 +122,7 @@ fn drop_dead_leaves(module: &mut Module) {
     let mut seen: BTreeSet<Value> = queue.iter().copied().collect();
     let mut live = BTreeSet::new();
     while let Some(value) = queue.pop() {
-        let mut needed = func.def_inst(value).map_or(Vec::new(), InstData::values);
+        let mut needed = func.def_inst(value).map_or(Values::new(), InstData::values);
         if let Some(&leaf) = by_load.get(&value) {
             live.insert(leaf);
             needed.extend(form.leaves[leaf].next);

@@ -2,12 +2,13 @@
 
 use crate::{Block, Function};
 use cranelift_entity::{EntitySet, SecondaryMap};
+use smallvec::SmallVec;
 
 /// The control flow graph of a function as it stood when computed.
 #[derive(Debug, Clone)]
 pub struct Cfg {
-    predecessors: SecondaryMap<Block, Vec<Block>>,
-    successors: SecondaryMap<Block, Vec<Block>>,
+    predecessors: SecondaryMap<Block, SmallVec<[Block; 2]>>,
+    successors: SecondaryMap<Block, SmallVec<[Block; 2]>>,
     order: Vec<Block>,
     reachable: EntitySet<Block>,
 }

@@ -6,6 +6,7 @@ use crate::rewrite::{Replacements, remove_unreachable};
 use cranelift_entity::{EntitySet, SecondaryMap};
 use iecc_ir::analysis::Cfg;
 use iecc_ir::{BinaryOp, Block, Function, Inst, InstData, Target, Terminator, Value};
+use smallvec::SmallVec;
 use std::collections::BTreeSet;
 
 /// What is known about a value. It only ever moves down this list.
@@ -61,7 +62,7 @@ pub(super) fn propagate(func: &mut Function) -> bool {
 struct Solver<'f> {
     func: &'f Function,
     facts: SecondaryMap<Value, Fact>,
-    users: SecondaryMap<Value, Vec<User>>,
+    users: SecondaryMap<Value, SmallVec<[User; 2]>>,
     block_of: SecondaryMap<Inst, Block>,
     reached: EntitySet<Block>,
     /// Jumps seen to happen: block and position among its targets.
@@ -72,7 +73,7 @@ struct Solver<'f> {
 
 impl<'f> Solver<'f> {
     fn new(func: &'f Function) -> Self {
-        let mut users: SecondaryMap<Value, Vec<User>> =
+        let mut users: SecondaryMap<Value, SmallVec<[User; 2]>> =
             SecondaryMap::with_capacity(func.value_count());
         let mut block_of = SecondaryMap::with_default(func.entry());
         for &block in &func.layout {
@@ -267,7 +268,11 @@ impl<'f> Solver<'f> {
     }
 }
 
-fn add_terminator(users: &mut SecondaryMap<Value, Vec<User>>, func: &Function, block: Block) {
+fn add_terminator(
+    users: &mut SecondaryMap<Value, SmallVec<[User; 2]>>,
+    func: &Function,
+    block: Block,
+) {
     let terminator = func.terminator(block);
     if let Terminator::Brif { cond: value, .. } | Terminator::Switch { value, .. } = terminator {
         users[*value].push(User::Branch(block));

@@ -42,9 +42,10 @@ fn bodies(func: &Function, each: &Loop, ranges: &LocalRanges) -> Option<u64> {
 fn write(func: &mut Function, each: &Loop, bodies: u64) {
     let block = each.header;
     let params = func.block(block).params.clone();
-    let targets = func.terminator(block).targets();
-    let back = targets.iter().find(|target| target.block == block);
+    let mut targets = func.terminator(block).targets().into_iter();
+    let back = targets.find(|target| target.block == block);
     let next = back.expect("the loop is this block").args.clone();
+    drop(targets);
     let body = func.block(block).insts.clone();
     // What the parameters are in the body that comes next.
     let mut now: HashMap<Value, Value> = HashMap::new();

@@ -15,7 +15,7 @@ use crate::scan_form::{Leaf, ScanForm};
 use case::{Case, DEPTH};
 use cranelift_entity::SecondaryMap;
 use iecc_ir::analysis::{Range, Ranges, interval};
-use iecc_ir::{CompareOp, Function, InstData, Module, Projection, Root, Type, Value};
+use iecc_ir::{CompareOp, Function, InstData, Module, Projection, Root, Type, Value, Values};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -456,7 +456,7 @@ fn add_gating_flags(
             Some(InstData::Select { .. } | InstData::Unary { .. } | InstData::Binary { .. })
                 if depth > 0 =>
             {
-                let operands = func.def_inst(value).map_or(Vec::new(), InstData::values);
+                let operands = func.def_inst(value).map_or(Values::new(), InstData::values);
                 queue.extend(operands.into_iter().map(|operand| (operand, depth - 1)));
             }
             _ => {}
@@ -526,10 +526,10 @@ fn thresholds(func: &Function, compared: &BTreeMap<Value, Vec<i64>>, leaf: &Leaf
         let operands = match func.def_inst(value) {
             Some(InstData::Const { ty, bits }) => {
                 numbers.push(ty.signed(*bits));
-                Vec::new()
+                Values::new()
             }
-            Some(InstData::Select { args, .. }) => args.to_vec(),
-            Some(InstData::Load { .. } | InstData::Compare { .. }) | None => Vec::new(),
+            Some(InstData::Select { args, .. }) => Values::from_slice(args),
+            Some(InstData::Load { .. } | InstData::Compare { .. }) | None => Values::new(),
             Some(inst) => inst.values(),
         };
         queue.extend(
