@@ -17,7 +17,7 @@ mod memory;
 mod route;
 
 use cost::{Costs, worst_case_cost};
-use iecc_ir::{FuncId, Image, Layout, Module, Region, Terminator, Verified};
+use iecc_ir::{FuncId, Function, Image, Layout, Module, Region, Terminator, Verified};
 use iecc_target::{Engine, Fault, region_bytes};
 use machine::{Machine, Scan};
 use memory::Memory;
@@ -144,18 +144,31 @@ impl Engine for Interpreter {
 /// # Errors
 /// The fault that ended it.
 pub fn run_prescan(module: Verified<'_>) -> Result<Image, Fault> {
-    let mut interpreter = Interpreter::new(module);
-    if let Some(prescan) = module.prescan {
-        let inputs = region_bytes(&module, Region::Input);
-        let mut outputs = region_bytes(&module, Region::Output);
-        interpreter.run(prescan, 0, &inputs, &mut outputs)?;
-    }
-    let image = Image::from_bytes(interpreter.state);
+    let prescan = module
+        .prescan
+        .filter(|id| does_something(&module.funcs[*id]));
+    let image = match prescan {
+        Some(prescan) => {
+            let mut interpreter = Interpreter::new(module);
+            let inputs = region_bytes(&module, Region::Input);
+            let mut outputs = region_bytes(&module, Region::Output);
+            interpreter.run(prescan, 0, &inputs, &mut outputs)?;
+            Image::from_bytes(interpreter.state)
+        }
+        None => module.image.clone(),
+    };
     if module.has_addresses() {
         let layout = Layout::new(&module.types);
         return Ok(image.tidied(&layout, &module.types, module.state));
     }
     Ok(image)
+}
+
+/// Whether there is more in a function than a return.
+fn does_something(func: &Function) -> bool {
+    let entry = func.block(func.entry());
+    let returns = matches!(entry.terminator, Some(Terminator::Return(_)));
+    !(entry.insts.is_empty() && returns)
 }
 
 fn has_faults(module: &Module) -> bool {

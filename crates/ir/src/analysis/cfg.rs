@@ -22,6 +22,8 @@ impl Cfg {
             order: Vec::new(),
             reachable: EntitySet::new(),
         };
+        cfg.predecessors.resize(func.block_count());
+        cfg.successors.resize(func.block_count());
         for &block in &func.layout {
             let Some(terminator) = &func.block(block).terminator else {
                 continue;

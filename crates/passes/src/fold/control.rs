@@ -60,9 +60,16 @@ fn collapsed(terminator: &Terminator) -> Option<Terminator> {
 /// Lets jumps to an empty block go where that block goes. Its parameters must be used in it alone:
 /// blocks behind it may then have other ways in.
 fn thread_jumps(func: &mut Function) -> bool {
+    let is_empty = |block: &Block| func.block(*block).insts.is_empty();
+    if !func.layout.iter().skip(1).any(is_empty) {
+        return false;
+    }
     let skippable = Skippable::new(func);
     let mut changed = false;
     for block in func.layout.clone() {
+        if !skippable.is_behind(func, block) {
+            continue;
+        }
         let mut terminator = func.terminator(block).clone();
         let mut rewritten = false;
         for target in terminator.targets_mut() {
@@ -103,6 +110,14 @@ impl Skippable {
             }
         }
         skippable
+    }
+
+    /// Whether a block jumps to an empty one.
+    fn is_behind(&self, func: &Function, block: Block) -> bool {
+        let targets = func.terminator(block).targets();
+        targets
+            .iter()
+            .any(|target| self.empty.contains(target.block))
     }
 
     /// Where a jump to `target` ends up, if it can skip the target.
@@ -177,6 +192,10 @@ fn blocks_whose_params_are_used_elsewhere(func: &Function) -> EntitySet<Block> {
 
 /// Replaces parameters that get one value only, themselves aside, by that value.
 fn drop_redundant_params(func: &mut Function) -> bool {
+    let has_params = |block: &Block| !func.block(*block).params.is_empty();
+    if !func.layout.iter().skip(1).any(has_params) {
+        return false;
+    }
     let cfg = Cfg::new(func);
     let mut replacements = Replacements::default();
     let mut dropped: SecondaryMap<Block, Vec<bool>> = SecondaryMap::new();

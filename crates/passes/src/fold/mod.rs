@@ -35,10 +35,14 @@ pub(crate) fn fold(module: &mut Module) {
 
 /// Folds one function.
 pub(crate) fn fold_function(types: &TypeTable, regions: Regions, func: &mut Function) {
+    let mut control = true;
     for _ in 0..MAX_ROUNDS {
         let constants = propagate::propagate(func);
         let algebra = simplify::simplify(types, regions, func);
-        let control = control::simplify_control(func);
+        if !(constants || algebra || control) {
+            break;
+        }
+        control = control::simplify_control(func);
         if !(constants || algebra || control) {
             break;
         }

@@ -6,8 +6,8 @@ use crate::rewrite::{Replacements, remove_unreachable};
 use cranelift_entity::{EntitySet, SecondaryMap};
 use iecc_ir::analysis::Cfg;
 use iecc_ir::{BinaryOp, Block, Function, Inst, InstData, Target, Terminator, Value};
+use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
-use std::collections::BTreeSet;
 
 /// What is known about a value. It only ever moves down this list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,7 +40,8 @@ impl Fact {
 
 #[derive(Debug, Clone, Copy)]
 enum User {
-    Inst(Inst),
+    /// In this block.
+    Inst(Inst, Block),
     /// Its branch decides by the value.
     Branch(Block),
     /// The block's jump to its n-th target passes the value for the m-th parameter. Looked at one
@@ -51,69 +52,73 @@ enum User {
 /// Replaces values that are always the same by constants and drops jumps that never happen. Says
 /// whether something changed.
 pub(super) fn propagate(func: &mut Function) -> bool {
+    let cfg = Cfg::new(func);
     let mut solver = Solver::new(func);
-    solver.run();
+    solver.run(cfg.reverse_postorder());
     let Solver { facts, reached, .. } = solver;
-    let constants = write_constants(func, &facts, &reached);
+    let constants = write_constants(func, &cfg, &facts, &reached);
     let jumps = write_jumps(func, &facts, &reached);
-    remove_unreachable(func) || constants || jumps
+    // What cannot be reached for another reason is for `control` to remove.
+    let removed = jumps && remove_unreachable(func);
+    removed || constants || jumps
 }
 
+/// Looks at every block that is reached once, in reverse postorder; after that only at what uses
+/// a value of which less is known than when it was looked at. Without loops that is nothing.
 struct Solver<'f> {
     func: &'f Function,
     facts: SecondaryMap<Value, Fact>,
-    users: SecondaryMap<Value, SmallVec<[User; 2]>>,
-    block_of: SecondaryMap<Inst, Block>,
+    /// Made when the first value changes.
+    users: Option<Users>,
     reached: EntitySet<Block>,
+    /// Blocks that were looked at.
+    seen: EntitySet<Block>,
     /// Jumps seen to happen: block and position among its targets.
-    taken: BTreeSet<(Block, usize)>,
-    blocks: Vec<Block>,
+    taken: FxHashSet<(Block, usize)>,
+    /// Values that changed behind the back of something that was looked at.
     values: Vec<Value>,
+    /// Blocks that are reached behind their turn.
+    late: Vec<Block>,
+    /// Whether blocks still have their turn.
+    in_order: bool,
 }
 
 impl<'f> Solver<'f> {
     fn new(func: &'f Function) -> Self {
-        let mut users: SecondaryMap<Value, SmallVec<[User; 2]>> =
-            SecondaryMap::with_capacity(func.value_count());
-        let mut block_of = SecondaryMap::with_default(func.entry());
-        for &block in &func.layout {
-            for &inst in &func.block(block).insts {
-                block_of[inst] = block;
-                let data = func.inst(inst);
-                let read = data.is_pure().then(|| data.values());
-                read.into_iter()
-                    .flatten()
-                    .for_each(|v| users[v].push(User::Inst(inst)));
-            }
-            add_terminator(&mut users, func, block);
-        }
+        let mut facts = SecondaryMap::new();
+        facts.resize(func.value_count());
         Self {
             func,
-            facts: SecondaryMap::with_capacity(func.value_count()),
-            users,
-            block_of,
+            facts,
+            users: None,
             reached: EntitySet::new(),
-            taken: BTreeSet::new(),
-            blocks: Vec::new(),
+            seen: EntitySet::new(),
+            taken: FxHashSet::default(),
             values: Vec::new(),
+            late: Vec::new(),
+            in_order: true,
         }
     }
 
-    fn run(&mut self) {
+    fn run(&mut self, order: &[Block]) {
         let entry = self.func.entry();
         for &param in &self.func.block(entry).params {
-            self.lower(param, Fact::Varies);
+            self.facts[param] = Fact::Varies;
         }
         self.reached.insert(entry);
-        self.blocks.push(entry);
+        for &block in order {
+            if self.reached.contains(block) {
+                self.look_at(block);
+            }
+        }
+        self.in_order = false;
+        let missed = order.iter().copied();
+        let missed =
+            missed.filter(|&block| self.reached.contains(block) && !self.seen.contains(block));
+        self.late = missed.collect();
         loop {
-            if let Some(block) = self.blocks.pop() {
-                let func = self.func;
-                func.block(block)
-                    .insts
-                    .iter()
-                    .for_each(|&inst| self.inst(inst));
-                self.terminator(block);
+            if let Some(block) = self.late.pop() {
+                self.look_at(block);
             } else if let Some(value) = self.values.pop() {
                 self.value_changed(value);
             } else {
@@ -122,20 +127,39 @@ impl<'f> Solver<'f> {
         }
     }
 
+    /// Nothing that uses the results was looked at before: they are used behind this block only.
+    fn look_at(&mut self, block: Block) {
+        self.seen.insert(block);
+        let func = self.func;
+        for &inst in &func.block(block).insts {
+            let fact = self.result(func.inst(inst));
+            for &value in func.results_of(inst) {
+                self.facts[value] = self.facts[value].meet(fact);
+            }
+        }
+        self.terminator(block);
+    }
+
     fn value_changed(&mut self, value: Value) {
-        for index in 0..self.users[value].len() {
-            match self.users[value][index] {
-                User::Inst(inst) if self.reached.contains(self.block_of[inst]) => self.inst(inst),
-                User::Branch(block) if self.reached.contains(block) => self.terminator(block),
+        let func = self.func;
+        let users = self.users.get_or_insert_with(|| Users::of(func));
+        let of_value = std::mem::take(&mut users.of[value]);
+        for &user in &of_value {
+            match user {
+                User::Inst(inst, block) if self.seen.contains(block) => self.inst(inst),
+                User::Branch(block) if self.seen.contains(block) => self.terminator(block),
                 User::Argument(block, target, position)
                     if self.taken.contains(&(block, target as usize)) =>
                 {
-                    let target = self.func.terminator(block).targets()[target as usize].block;
-                    let param = self.func.block(target).params[position as usize];
+                    let target = func.terminator(block).targets()[target as usize].block;
+                    let param = func.block(target).params[position as usize];
                     self.lower(param, self.facts[value]);
                 }
-                User::Inst(_) | User::Branch(_) | User::Argument(..) => {}
+                User::Inst(..) | User::Branch(_) | User::Argument(..) => {}
             }
+        }
+        if let Some(users) = &mut self.users {
+            users.of[value] = of_value;
         }
     }
 
@@ -259,43 +283,69 @@ impl<'f> Solver<'f> {
             return;
         }
         let func = self.func;
+        let seen = self.seen.contains(target.block);
         for (&param, &arg) in func.block(target.block).params.iter().zip(&target.args) {
-            self.lower(param, self.facts[arg]);
+            if seen {
+                self.lower(param, self.facts[arg]);
+            } else {
+                self.facts[param] = self.facts[param].meet(self.facts[arg]);
+            }
         }
-        if self.reached.insert(target.block) {
-            self.blocks.push(target.block);
+        if self.reached.insert(target.block) && !self.in_order {
+            self.late.push(target.block);
         }
     }
 }
 
-fn add_terminator(
-    users: &mut SecondaryMap<Value, SmallVec<[User; 2]>>,
-    func: &Function,
-    block: Block,
-) {
-    let terminator = func.terminator(block);
-    if let Terminator::Brif { cond: value, .. } | Terminator::Switch { value, .. } = terminator {
-        users[*value].push(User::Branch(block));
+/// What reads each value.
+struct Users {
+    of: SecondaryMap<Value, SmallVec<[User; 2]>>,
+}
+
+impl Users {
+    fn of(func: &Function) -> Self {
+        let mut users = Self {
+            of: SecondaryMap::with_capacity(func.value_count()),
+        };
+        for &block in &func.layout {
+            for &inst in &func.block(block).insts {
+                let data = func.inst(inst);
+                let read = data.is_pure().then(|| data.values());
+                read.into_iter()
+                    .flatten()
+                    .for_each(|v| users.of[v].push(User::Inst(inst, block)));
+            }
+            users.add_terminator(func, block);
+        }
+        users
     }
-    for (index, target) in (0..).zip(terminator.targets()) {
-        for (position, &arg) in (0..).zip(&target.args) {
-            users[arg].push(User::Argument(block, index, position));
+
+    fn add_terminator(&mut self, func: &Function, block: Block) {
+        let terminator = func.terminator(block);
+        if let Terminator::Brif { cond: value, .. } | Terminator::Switch { value, .. } = terminator
+        {
+            self.of[*value].push(User::Branch(block));
+        }
+        for (index, target) in (0..).zip(terminator.targets()) {
+            for (position, &arg) in (0..).zip(&target.args) {
+                self.of[arg].push(User::Argument(block, index, position));
+            }
         }
     }
 }
 
 fn write_constants(
     func: &mut Function,
+    cfg: &Cfg,
     facts: &SecondaryMap<Value, Fact>,
     reached: &EntitySet<Block>,
 ) -> bool {
-    let cfg = Cfg::new(func);
     let mut replacements = Replacements::default();
     let mut changed = false;
     for &block in cfg.reverse_postorder() {
         if reached.contains(block) {
             changed |= constant_results(func, block, facts);
-            constant_params(func, &cfg, block, facts, &mut replacements);
+            constant_params(func, cfg, block, facts, &mut replacements);
         }
     }
     replacements.apply(func) || changed

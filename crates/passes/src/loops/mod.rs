@@ -24,21 +24,35 @@ pub(crate) fn loops(module: &mut Module) {
 }
 
 fn rewrite(types: &TypeTable, regions: Regions, func: &mut Function) -> bool {
-    let cfg = Cfg::new(func);
-    let loops = Loops::new(&cfg, &Dominators::new(&cfg));
-    if loops.is_empty() {
+    let mut known = Known::of(func);
+    if known.loops.is_empty() {
         return false;
     }
-    let dominators = Dominators::new(&cfg);
-    let ranges = LocalRanges::new(func, &cfg, &dominators, &loops);
-    let filled = fill::fill(types, regions, func, &loops, &ranges);
-    let cfg = Cfg::new(func);
-    let loops = Loops::new(&cfg, &Dominators::new(&cfg));
-    let rotated = rotate::rotate(func, &cfg, &loops);
-    let cfg = Cfg::new(func);
-    let dominators = Dominators::new(&cfg);
-    let loops = Loops::new(&cfg, &dominators);
-    let ranges = LocalRanges::new(func, &cfg, &dominators, &loops);
-    let unrolled = unroll::unroll(func, &loops, &ranges);
+    let filled = fill::fill(types, regions, func, &known.loops, &known.ranges);
+    if filled {
+        known = Known::of(func);
+    }
+    let rotated = rotate::rotate(func, &known.cfg, &known.loops);
+    if rotated {
+        known = Known::of(func);
+    }
+    let unrolled = unroll::unroll(func, &known.loops, &known.ranges);
     rotated || filled || unrolled
+}
+
+/// A function as it stands.
+struct Known {
+    cfg: Cfg,
+    loops: Loops,
+    ranges: LocalRanges,
+}
+
+impl Known {
+    fn of(func: &Function) -> Self {
+        let cfg = Cfg::new(func);
+        let dominators = Dominators::new(&cfg);
+        let loops = Loops::new(&cfg, &dominators);
+        let ranges = LocalRanges::new(func, &cfg, &dominators, &loops);
+        Self { cfg, loops, ranges }
+    }
 }
