@@ -79,11 +79,11 @@ impl Names {
     /// The symbol of a word of the language. It does not count as seen: whoever uses it as a name
     /// gives it its spelling.
     pub fn reserve(&mut self, word: &str) -> Symbol {
-        let count = self.len();
-        let symbol = self.intern(word);
-        if self.len() > count {
-            self.entries[symbol.index()].reserved = true;
+        if let Some(known) = self.find(word) {
+            return known;
         }
+        let symbol = self.intern(word);
+        self.entries[symbol.index()].reserved = true;
         symbol
     }
 
@@ -187,6 +187,7 @@ mod tests {
     fn reserved_words_take_the_spelling_of_the_text() {
         let mut names = Names::new();
         let step = names.reserve("STEP");
+        assert_eq!(names.reserve("STEP"), step);
         assert_eq!(names.text(step), "STEP");
         assert_eq!(names.intern("Step"), step);
         assert_eq!(names.reserve("STEP"), step);

@@ -2,10 +2,11 @@
 
 use crate::messages::Messages;
 use crate::program::{Program, load_stimulus};
+use crate::terminal;
 use clap::ValueEnum;
 use iecc_diag::Diagnostic;
 use iecc_driver::EngineKind;
-use iecc_driver::run::{Request, Schedule, Session, Trace, TraceFile, parse_duration};
+use iecc_driver::run::{LastRow, Request, Schedule, Session, Trace, TraceFile, parse_duration};
 use iecc_ir::Module;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal};
@@ -44,7 +45,7 @@ pub(crate) struct Arguments {
     stimulus: Option<PathBuf>,
 
     /// Where to write inputs, outputs and watched tags after each scan: FILE.csv or FILE.vcd; may
-    /// be given again
+    /// be given again. Without it, what they are after the last scan is printed
     #[arg(long, value_name = "FILE")]
     trace: Vec<PathBuf>,
 
@@ -123,11 +124,11 @@ impl Arguments {
         period_ns: u64,
     ) -> Result<(), Vec<Diagnostic>> {
         let schedule = self.schedule(period_ns).map_err(|d| vec![d])?;
-        let mut traces = Traces(Vec::new());
+        let mut traces = Traces::default();
         for path in &self.trace {
             let columns = session.columns();
             let trace = TraceFile::create(path, &module.name, columns, schedule, self.changes);
-            traces.0.push(trace.map_err(|d| vec![d])?);
+            traces.files.push(trace.map_err(|d| vec![d])?);
         }
         let mut engine = self.engine().start(module, period_ns)?;
         let bar = progress_bar(schedule.scans());
@@ -137,6 +138,9 @@ impl Arguments {
         bar.finish_and_clear();
         // After a fault the scans before it are worth seeing.
         let told = told.map_err(|error| error.to_diagnostic(module));
+        if self.trace.is_empty() {
+            terminal::print(&traces.last.text(session.columns()));
+        }
         let written = traces.finish();
         told.and(written).map_err(|d| vec![d])
     }
@@ -151,19 +155,23 @@ impl Arguments {
 }
 
 /// All traces of a run.
-struct Traces(Vec<TraceFile>);
+#[derive(Default)]
+struct Traces {
+    files: Vec<TraceFile>,
+    last: LastRow,
+}
 
 impl Trace for Traces {
     fn row(&mut self, now_ns: u64, values: &[u64]) -> io::Result<()> {
-        self.0
-            .iter_mut()
-            .try_for_each(|trace| trace.row(now_ns, values))
+        self.last.row(now_ns, values)?;
+        let mut files = self.files.iter_mut();
+        files.try_for_each(|trace| trace.row(now_ns, values))
     }
 }
 
 impl Traces {
     fn finish(self) -> Result<(), Diagnostic> {
-        self.0.into_iter().try_for_each(TraceFile::finish)
+        self.files.into_iter().try_for_each(TraceFile::finish)
     }
 }
 

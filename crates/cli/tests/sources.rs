@@ -244,3 +244,21 @@ END_PROGRAM
         "t_ms,i,q,__status\n0,0,0,16#2\n"
     );
 }
+
+#[test]
+fn a_run_without_a_trace_shows_how_it_ended() {
+    let text = "PROGRAM Main VAR t : TIME; END_VAR VAR_OUTPUT count : INT; r : BOOL; END_VAR count := count + 2; r := count > 5; t := t + T#1s; END_PROGRAM";
+    let folder = folder(&[("a.st", text)]);
+    let output = iecc(
+        folder.path(),
+        &["run", "--scans", "3", "--watch", "t", "a.st"],
+    );
+    assert_eq!(stderr(&output), "");
+    let shown = std::str::from_utf8(&output.stdout).expect("UTF-8");
+    assert_eq!(shown, "count = 6\nr     = 1\nt     = T#3s\n");
+    let output = iecc(
+        folder.path(),
+        &["run", "--scans", "3", "--trace", "t.csv", "a.st"],
+    );
+    assert_eq!((output.stdout, output.stderr), (Vec::new(), Vec::new()));
+}

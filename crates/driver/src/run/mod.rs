@@ -30,4 +30,4 @@ pub use stimulus::Stimulus;
 pub use time::{Schedule, TimeUnit, parse_duration};
 pub(crate) use value::write_value;
 
-pub use trace::{CsvTrace, NoTrace, Trace, TraceFile, VcdTrace};
+pub use trace::{CsvTrace, LastRow, NoTrace, Trace, TraceFile, VcdTrace};

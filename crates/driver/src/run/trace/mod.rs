@@ -2,10 +2,12 @@
 
 mod csv;
 mod file;
+mod last;
 mod vcd;
 
 pub use csv::CsvTrace;
 pub use file::TraceFile;
+pub use last::LastRow;
 pub use vcd::VcdTrace;
 
 use std::io;
