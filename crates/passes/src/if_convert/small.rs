@@ -1,16 +1,19 @@
 //! Small choices: a branch around a handful of cheap operations costs more than doing them.
 //!
+//! A flag that only picks a number stays a branch: see [`compares`].
+//!
 //! A store in an arm becomes a store behind both, of what the arm stores or what was there before.
 
 use crate::rewrite::{Replacements, remove_unreachable};
 use cranelift_entity::{EntitySet, SecondaryMap};
 use iecc_ir::analysis::Cfg;
 use iecc_ir::{
-    BinaryOp, Block, Function, InstData, Module, Place, Root, Target, Terminator, UnaryOp, Value,
+    BinaryOp, Block, Function, InstData, Module, Place, Root, Target, Terminator, Type, UnaryOp,
+    Value,
 };
 
 /// How many operations both arms may have together, and how many choices may come of it.
-const MAX_OPERATIONS: usize = 6;
+const MAX_OPERATIONS: usize = 8;
 const MAX_CHOICES: usize = 3;
 
 /// Converts branches whose arms are cheap and meet at once, inner ones first. Loops and faults
@@ -156,8 +159,26 @@ impl Choice {
         let operations = insts.filter(|&&inst| !is_free(func.inst(inst))).count();
         let differ = self.ends[0].args.iter().zip(&self.ends[1].args);
         let choices = differ.filter(|(a, b)| a != b).count() + self.stores.len();
-        operations <= MAX_OPERATIONS && choices <= MAX_CHOICES
+        operations <= MAX_OPERATIONS
+            && choices <= MAX_CHOICES
+            && (operations > 0 || compares(func, self.cond) || self.chooses_bits(func))
     }
+
+    /// Whether bits depend on the condition, of which choices are logic.
+    fn chooses_bits(&self, func: &Function) -> bool {
+        let passed = self.ends[0].args.iter().zip(&self.ends[1].args);
+        let passed = passed.filter(|(a, b)| a != b).map(|(&a, _)| a);
+        let stored = self.stores.iter().filter_map(|(_, [a, b])| a.or(*b));
+        let mut values = passed.chain(stored);
+        values.any(|value| func.value_type(value) == Type::I1)
+    }
+}
+
+/// Whether a condition compares values. One that does not is made of flags, which seldom change from
+/// scan to scan: the processor foresees the branch, while a choice would wait for the flag, often
+/// stored just before by the caller, and all that comes behind would wait for the choice.
+fn compares(func: &Function, cond: Value) -> bool {
+    matches!(func.def_inst(cond), Some(InstData::Compare { .. }))
 }
 
 /// A block with one way in, cheap operations only, and a jump; and what it passes on.

@@ -3,7 +3,8 @@
 //! Copies and clears of few scalars, or of locals, become loads and stores first.
 //!
 //! After it, a promoted scalar is loaded once, at the entry, and only if its old value is needed;
-//! and stored once, at the only return, and only if it was written to. Nothing is stored on the
+//! and stored once, at the only return, and only if it was written to; in machine code, at the end of
+//! the entry if nothing but a return can come and only the entry wrote to it. Nothing is stored on the
 //! way to a fault, which leaves memory as it was before the scan. Bits of a promoted word are taken
 //! and put by shifts and masks.
 //!
@@ -31,12 +32,12 @@ const FEW: usize = 48;
 
 /// Promotes what can be promoted in every function.
 pub(crate) fn promote(module: &mut Module) {
-    run(module, usize::MAX, expand::ALL);
+    run(module, usize::MAX, expand::ALL, false);
 }
 
 /// Promotes in functions that touch few scalars.
 pub(crate) fn promote_few(module: &mut Module) {
-    run(module, FEW, expand::FEW);
+    run(module, FEW, expand::FEW, true);
 }
 
 /// A scalar that becomes a variable.
@@ -54,7 +55,7 @@ impl Promoted {
     }
 }
 
-fn run(module: &mut Module, limit: usize, expansion: expand::Limits) {
+fn run(module: &mut Module, limit: usize, expansion: expand::Limits, store_early: bool) {
     expand::expand(module, expansion);
     let summaries = Summaries::of(module);
     let regions = [
@@ -91,7 +92,7 @@ fn run(module: &mut Module, limit: usize, expansion: expand::Limits) {
             join_returns(func);
         }
         if !promoted.is_empty() {
-            rename::rename(func, &promoted);
+            rename::rename(func, &promoted, store_early);
         }
     }
 }

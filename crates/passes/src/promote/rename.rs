@@ -8,7 +8,7 @@
 use super::Promoted;
 use super::candidates::variable_place;
 use crate::rewrite::Replacements;
-use cranelift_entity::SecondaryMap;
+use cranelift_entity::{EntitySet, SecondaryMap};
 use iecc_ir::analysis::{Cfg, Dominators};
 use iecc_ir::{
     BinaryOp, Block, ConvertOp, Function, Index, Inst, InstData, Origin, Place, Projection, Root,
@@ -17,11 +17,17 @@ use iecc_ir::{
 use std::collections::HashMap;
 
 /// Turns the scalars into values. The function has at most one return if one of them is no local.
-pub(super) fn rename(func: &mut Function, promoted: &[Promoted]) {
+/// With `store_early`, what only the entry stores is stored at its end, where that cannot be seen.
+pub(super) fn rename(func: &mut Function, promoted: &[Promoted], store_early: bool) {
     let cfg = Cfg::new(func);
     let dominators = Dominators::new(&cfg);
     let variables: HashMap<&Place, usize> = promoted.iter().map(|p| &p.place).zip(0..).collect();
-    let joins = place_params(func, &cfg, &dominators, &variables, promoted);
+    let stores = stores(func, &cfg, &variables, promoted.len());
+    let early = match store_early && always_returns(func, &cfg) {
+        true => early(func, &stores),
+        false => vec![false; promoted.len()],
+    };
+    let joins = place_params(func, &cfg, &dominators, stores, promoted);
     let mut children: SecondaryMap<Block, Vec<Block>> = SecondaryMap::new();
     for &block in cfg.reverse_postorder() {
         if let Some(parent) = dominators.immediate(block) {
@@ -31,6 +37,7 @@ pub(super) fn rename(func: &mut Function, promoted: &[Promoted]) {
     Renamer {
         func,
         promoted,
+        early,
         variables,
         joins,
         children,
@@ -45,17 +52,14 @@ pub(super) fn rename(func: &mut Function, promoted: &[Promoted]) {
     .run();
 }
 
-/// Gives every join where different values of a variable meet a parameter for it; returns the
-/// variables by block, in the order of the parameters, which stand behind those that were there.
-fn place_params(
-    func: &mut Function,
+/// The blocks that store each variable.
+fn stores(
+    func: &Function,
     cfg: &Cfg,
-    dominators: &Dominators,
     variables: &HashMap<&Place, usize>,
-    promoted: &[Promoted],
-) -> SecondaryMap<Block, Vec<(usize, Value)>> {
-    let frontiers = frontiers(cfg, dominators);
-    let mut stores: Vec<Vec<Block>> = vec![Vec::new(); promoted.len()];
+    count: usize,
+) -> Vec<Vec<Block>> {
+    let mut stores: Vec<Vec<Block>> = vec![Vec::new(); count];
     for &block in cfg.reverse_postorder() {
         for &inst in &func.block(block).insts {
             if let InstData::Store { place, .. } = func.inst(inst)
@@ -66,6 +70,39 @@ fn place_params(
             }
         }
     }
+    stores
+}
+
+/// Whether nothing but the return is behind the entry: no fault, no call, no way back.
+fn always_returns(func: &Function, cfg: &Cfg) -> bool {
+    let mut seen = EntitySet::new();
+    cfg.reverse_postorder().iter().all(|&block| {
+        let terminator = func.terminator(block);
+        seen.insert(block);
+        let mut insts = func.block(block).insts.iter();
+        !matches!(terminator, Terminator::Fault(_))
+            && !terminator.targets().iter().any(|t| seen.contains(t.block))
+            && !insts.any(|&inst| matches!(func.inst(inst), InstData::Call { .. }))
+    })
+}
+
+/// The variables that only the entry stores: at its end they are what they are at the return. Stored
+/// there, what was computed for them is not kept, or computed again, behind branches.
+fn early(func: &Function, stores: &[Vec<Block>]) -> Vec<bool> {
+    let only_entry = [func.entry()];
+    stores.iter().map(|blocks| *blocks == only_entry).collect()
+}
+
+/// Gives every join where different values of a variable meet a parameter for it; returns the
+/// variables by block, in the order of the parameters, which stand behind those that were there.
+fn place_params(
+    func: &mut Function,
+    cfg: &Cfg,
+    dominators: &Dominators,
+    stores: Vec<Vec<Block>>,
+    promoted: &[Promoted],
+) -> SecondaryMap<Block, Vec<(usize, Value)>> {
+    let frontiers = frontiers(cfg, dominators);
     let mut joins: SecondaryMap<Block, Vec<(usize, Value)>> = SecondaryMap::new();
     for (variable, mut pending) in stores.into_iter().enumerate() {
         while let Some(block) = pending.pop() {
@@ -114,6 +151,8 @@ enum Visit {
 struct Renamer<'f> {
     func: &'f mut Function,
     promoted: &'f [Promoted],
+    /// Which are stored at the end of the entry.
+    early: Vec<bool>,
     variables: HashMap<&'f Place, usize>,
     joins: SecondaryMap<Block, Vec<(usize, Value)>>,
     children: SecondaryMap<Block, Vec<Block>>,
@@ -161,8 +200,11 @@ impl Renamer<'_> {
             self.origin = self.func.origin(inst);
             self.inst(inst);
         }
+        if block == self.func.entry() {
+            self.store_all(true);
+        }
         if matches!(self.func.terminator(block), Terminator::Return(_)) {
-            self.store_all();
+            self.store_all(false);
         }
         self.func.block_mut(block).insts = std::mem::take(&mut self.out);
         self.arguments(block);
@@ -230,9 +272,12 @@ impl Renamer<'_> {
         value
     }
 
-    /// Stores what is not as it was; locals are gone with the return.
-    fn store_all(&mut self) {
+    /// Stores what is to be stored here and not as it was; locals are gone with the return.
+    fn store_all(&mut self, early: bool) {
         for (variable, promoted) in self.promoted.iter().enumerate() {
+            if self.early[variable] != early {
+                continue;
+            }
             let current = self.current[variable].map(|value| self.replacements.find(value));
             let kept = promoted.is_stored && !promoted.is_local();
             let Some(value) = current.filter(|_| kept) else {

@@ -53,6 +53,78 @@ b0:
     );
 }
 
+/// A number picked by a flag stays behind a branch, which the processor foresees; one picked by a
+/// comparison, or computed, becomes a choice, and so do bits.
+#[test]
+fn flags_that_only_pick_numbers_stay_branches() {
+    let branches = |cond: &str, arm: &str| {
+        let text = format!(
+            "{HEADER}fn @scan[]() -> () {{
+b0:
+  v0: i1 = load input.p
+  v1: i32 = load input.x
+  v2: i32 = load state.n
+  v3: i1 = load input.q
+  v4: i1 = {cond}
+  brif v4, b1, b2
+b1:
+  {arm}
+  jump b2
+b2:
+  return
+}}
+"
+        );
+        let module = optimised(&["if_convert_small"], &text);
+        module.funcs[module.scan].layout.len()
+    };
+    let flag = "and v0, v3";
+    assert_eq!(branches(flag, "store state.n, v1"), 3);
+    assert_eq!(branches("slt v1, v2", "store state.n, v1"), 1);
+    let sum = "v5: i32 = add v1, v2\n  store state.n, v5";
+    assert_eq!(branches(flag, sum), 1);
+    let bit = "store state.n, v1\n  store state.m, v0";
+    assert_eq!(branches(flag, bit), 1);
+}
+
+/// What only the entry stores is stored there, unless a fault may come, or a way back.
+#[test]
+fn what_only_the_entry_stores_is_stored_there() {
+    let is_early = |last: &str| {
+        let text = format!(
+            "{HEADER}fn @scan[]() -> () {{
+b0:
+  v0: i1 = load input.p
+  v1: i32 = load input.x
+  v2: i32 = load state.t.n
+  v3: i32 = add v1, v2
+  store state.t.n, v3
+  brif v0, b1, b2
+b1:
+  store state.n, v3
+  {last}
+b2:
+  return
+}}
+"
+        );
+        let text = print_module(&optimised(&["promote_few"], &text));
+        let branch = text.find("brif").unwrap();
+        let [early, late] = ["t.n", "n"].map(|place| {
+            let stores: Vec<_> = text
+                .match_indices(&format!("store state.{place},"))
+                .collect();
+            assert!(stores.len() <= 1);
+            stores.first().is_some_and(|(at, _)| *at < branch)
+        });
+        assert!(!late);
+        early
+    };
+    assert!(is_early("jump b2"));
+    assert!(!is_early("fault index"));
+    assert!(!is_early("v4: i1 = load input.q\n  brif v4, b1, b2"));
+}
+
 /// Both arms store one place, and one of them another: all loads come before all stores.
 #[test]
 fn arms_may_store_different_places() {
