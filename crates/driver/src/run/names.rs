@@ -8,6 +8,7 @@ use iecc_ir::{
     FieldDef, Index, InstData, Layout, MemType, Module, Place, PlaceType, Projection, Root,
     StructId, Type, View,
 };
+use iecc_sema::hir::BASE;
 use iecc_source::Span;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -209,14 +210,27 @@ impl<'m> Names<'m> {
         id: StructId,
         name: &str,
     ) -> Result<Place, NameError> {
-        let fields = &self.module.types.structs[id].fields;
-        let found = fields
-            .iter()
-            .position(|field| field.name.eq_ignore_ascii_case(name));
-        let known = fields.iter().map(|field| field.name.as_str());
-        found.map(|index| place.field(index as u32)).ok_or_else(|| {
-            NameError::unknown(format!("`{before}` has no member `{name}`"), name, known)
-        })
+        let (mut place, mut looked_in) = (place, Some(id));
+        let mut known = Vec::new();
+        while let Some(id) = looked_in {
+            let fields = &self.module.types.structs[id].fields;
+            let found = |field: &FieldDef| field.name.eq_ignore_ascii_case(name);
+            if let Some(index) = fields.iter().position(found) {
+                return Ok(place.field(index as u32));
+            }
+            known.extend(fields.iter().map(|field| field.name.as_str()));
+            looked_in = None;
+            // What an instance inherits lies in the part of it that is the base.
+            let base = fields.iter().position(|field| field.name == BASE);
+            if let Some((index, MemType::Struct(base))) =
+                base.map(|index| (index, fields[index].ty))
+            {
+                (place, looked_in) = (place.field(index as u32), Some(base));
+            }
+        }
+        known.retain(|name| !name.contains('\''));
+        let message = format!("`{before}` has no member `{name}`");
+        Err(NameError::unknown(message, name, known))
     }
 }
 
@@ -405,7 +419,9 @@ mod tests {
 
     const MODULE: &str = "module m
 struct TIMER { DN: i1, PRE: i32, last: i64 }
-state { Motor: i1, t: TIMER, \"Local:1:I.Data\": i16, grid: [2 x [3 x i8]], r: f32 }
+struct Fan { speed: i8 }
+struct Blower { \"base'\": Fan, heat: i8 }
+state { Motor: i1, t: TIMER, b: Blower, \"Local:1:I.Data\": i16, grid: [2 x [3 x i8]], r: f32 }
 input { Start: i1 }
 output { Motor: i1 }
 name Alias = state.\"Local:1:I.Data\".3
@@ -436,6 +452,8 @@ b0:
             ("grid[1, 2]", "state.grid[1][2]"),
             ("grid[0,1].7", "state.grid[0][1].7"),
             ("t", "state.t"),
+            ("b.Heat", "state.b.heat"),
+            ("b.Speed", "state.b.\"base'\".speed"),
         ] {
             assert_eq!(
                 show(&module, &watch.find(path).unwrap()),

@@ -1,6 +1,6 @@
 //! Paths as users write them outside programs: in options and on the command line.
 
-use crate::hir::{Place, Program, Step, TagId, Type};
+use crate::hir::{BASE, Place, Program, Step, TagId, Type};
 
 /// The place a path names.
 pub(crate) fn place(program: &Program, path: &str) -> Option<Place> {
@@ -68,7 +68,7 @@ fn member(program: &Program, place: Place, name: &str) -> Option<Place> {
             }
             // What is inherited lies in the part that is the base; chains of these are short.
             let base = def.members.first().filter(|first| first.hidden)?;
-            let inherits = base.name == "__base";
+            let inherits = base.name == BASE;
             inherits.then(|| member(program, place.step(Step::Field(0)), name))?
         }
         Type::Elementary(ty) => {

@@ -17,7 +17,7 @@ pub use ladder::{
 };
 pub use place::{Access, Place, Step};
 pub use types::{
-    ArrayDef, ArrayId, Elementary, MemberDef, StructDef, StructId, StructKind, Type, Types,
+    ArrayDef, ArrayId, BASE, Elementary, MemberDef, StructDef, StructId, StructKind, Type, Types,
     Unusable, View,
 };
 

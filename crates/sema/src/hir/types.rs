@@ -168,6 +168,10 @@ pub enum View {
     DateTime,
 }
 
+/// The hidden first member of an instance that extends another: the part that is the base. No name
+/// of a source holds an apostrophe.
+pub const BASE: &str = "base'";
+
 /// A member of a structure.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MemberDef {

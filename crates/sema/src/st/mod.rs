@@ -52,6 +52,7 @@ mod resolve;
 pub mod signature;
 mod signatures;
 mod size;
+mod spelling;
 mod storage;
 mod suitable;
 pub mod testing;
@@ -162,6 +163,7 @@ fn analysis<'a>(
     }
     analysis.declare_lists();
     analysis.check_dialect();
+    analysis.check_spelling();
     analysis.check_pragmas();
     analysis.index_units();
     analysis.resolve_usings();

@@ -6,7 +6,8 @@ use super::instance::InstancePart;
 use super::signature::PouId;
 use super::types::{TypeId, TypeKind};
 use crate::hir::{
-    ArrayId, Elementary, InitId, MemberDef, StructDef, StructId, StructKind, Type, View, code::Init,
+    ArrayId, BASE, Elementary, InitId, MemberDef, StructDef, StructId, StructKind, Type, View,
+    code::Init,
 };
 use rustc_hash::FxHashMap;
 use std::collections::HashSet;
@@ -166,7 +167,7 @@ impl Analysis<'_> {
             let (name, ty, of, hidden) = match part {
                 InstancePart::TypeNumber => {
                     let ty = Type::Elementary(Elementary::Udint);
-                    ("__type".to_owned(), ty, TypeId::ERROR, true)
+                    ("type'".to_owned(), ty, TypeId::ERROR, true)
                 }
                 InstancePart::Mock => {
                     let ty = Type::Elementary(Elementary::Lint);
@@ -174,7 +175,7 @@ impl Analysis<'_> {
                 }
                 InstancePart::Base(base) => {
                     let ty = Type::Struct(self.instance_struct(base));
-                    ("__base".to_owned(), ty, TypeId::ERROR, true)
+                    (BASE.to_owned(), ty, TypeId::ERROR, true)
                 }
                 InstancePart::Var(index) => {
                     let var = self.pou(pou).vars[index].clone();
@@ -183,7 +184,7 @@ impl Analysis<'_> {
                 }
                 InstancePart::Edge(index) => {
                     let name = self.text(self.pou(pou).vars[index].name);
-                    let name = format!("__edge_{name}");
+                    let name = format!("edge'{name}");
                     (name, Type::Elementary(Elementary::Bool), TypeId::BOOL, true)
                 }
             };
