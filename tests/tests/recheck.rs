@@ -1,15 +1,14 @@
 //! After any change of a text, a workspace that knows the text before says what a new one says that
 //! sees it for the first time; and it does not look again at what the change cannot have touched.
-#![expect(clippy::disallowed_methods, reason = "tests read files")]
 
 use iecc_diag::Diagnostics;
 use iecc_driver::Constants;
 use iecc_ide::{Dialect, Workspace};
 use iecc_source::FileId;
+use iecc_tests::cases::suite;
 use iecc_tests::mutate::mutate;
 use iecc_tests::random_ir::seeds;
 use iecc_tests::rng::Rng;
-use std::path::Path;
 
 /// Each makes some twenty changes.
 const SEEDS: u64 = 25;
@@ -168,11 +167,11 @@ fn any_change_gives_what_a_first_look_gives() {
 
 #[test]
 fn cases_of_the_suite_can_be_edited() {
-    let cases = cases();
+    let cases = suite();
     for seed in seeds(SEEDS) {
         let mut rng = Rng::new(seed);
         let dialect = [Dialect::Iec, Dialect::Codesys][rng.below(2)];
-        let text = cases[rng.below(cases.len())].clone();
+        let text = cases[rng.below(cases.len())].text.clone();
         let mut project = Project::new(dialect, &[text]);
         project.workspace.check();
         walk(&mut project, &mut rng, dialect, &format!("seed {seed}"));
@@ -240,18 +239,4 @@ fn add_a_line(text: &str, rng: &mut Rng) -> String {
         lines.insert(rng.below(lines.len() + 1), line);
     }
     lines.join("\n") + "\n"
-}
-
-/// The texts of all cases, in a fixed order.
-fn cases() -> Vec<String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("conformance");
-    let folders = std::fs::read_dir(root).expect("the suite");
-    let mut paths = Vec::new();
-    for folder in folders {
-        let cases = std::fs::read_dir(folder.expect("readable").path()).expect("a folder");
-        paths.extend(cases.map(|case| case.expect("readable").path()));
-    }
-    paths.sort();
-    let texts = paths.iter().map(std::fs::read_to_string);
-    texts.map(|text| text.expect("a readable case")).collect()
 }

@@ -7,6 +7,7 @@
 
 use cranelift_entity::SecondaryMap;
 use iecc_ir::analysis::Cfg;
+use iecc_ir::eval::canonical_nan;
 use iecc_ir::{Block, ConvertOp, Function, InstData, Type, Value};
 
 /// What is known about the bits of a float in machine code.
@@ -98,15 +99,6 @@ fn of_result(data: &InstData, classes: &NanClasses) -> NanBits {
         | InstData::Now
         | InstData::Elapsed { .. }
         | InstData::Step { .. } => panic!("the result is no float"),
-    }
-}
-
-/// The canonical NaN of a float type.
-pub(crate) fn canonical_nan(ty: Type) -> u64 {
-    match ty {
-        Type::F32 => 0x7fc0_0000,
-        Type::F64 => 0x7ff8_0000_0000_0000,
-        Type::I1 | Type::I8 | Type::I16 | Type::I32 | Type::I64 => panic!("no float"),
     }
 }
 

@@ -130,7 +130,8 @@ impl Plan {
         let cfg = Cfg::new(func);
         let mut facts = Facts::default();
         let mut loops = Loops::default();
-        if goes_back(&cfg) || has_computed_indices(func) {
+        let goes_back = cfg.jumps_back().next().is_some();
+        if goes_back || has_computed_indices(func) {
             let dominators = Dominators::new(&cfg);
             loops = Loops::new(&cfg, &dominators);
             facts.ranges = Some(LocalRanges::new(func, &cfg, &dominators, &loops));
@@ -186,7 +187,8 @@ impl Plan {
         own: &dyn Fn(Block) -> u64,
     ) {
         if loops.irreducible.is_some() {
-            facts.payments = payments_of_jumps_back(cfg, facts.work);
+            let work = facts.work;
+            facts.payments = cfg.jumps_back().map(|block| (block, work)).collect();
             return;
         }
         let work = |each: &Loop| {
@@ -319,27 +321,6 @@ fn entries(
         ))
     };
     ways_in.map(entry).collect()
-}
-
-/// Whether there is a loop of any kind.
-fn goes_back(cfg: &Cfg) -> bool {
-    !payments_of_jumps_back(cfg, 0).is_empty()
-}
-
-fn payments_of_jumps_back(cfg: &Cfg, work: u64) -> BTreeMap<Block, u64> {
-    let mut position = SecondaryMap::with_default(0);
-    for (index, &block) in cfg.reverse_postorder().iter().enumerate() {
-        position[block] = index;
-    }
-    let blocks = cfg.reverse_postorder().iter();
-    let jumps_back = |&&block: &&Block| {
-        let mut targets = cfg.successors(block).iter();
-        targets.any(|&to| position[to] <= position[block])
-    };
-    blocks
-        .filter(jumps_back)
-        .map(|&block| (block, work))
-        .collect()
 }
 
 /// Whether a place has an index by value.

@@ -157,7 +157,7 @@ fn check_logix(
         edits: options.edits,
     };
     let mut names = Names::new();
-    let library = library(map, sources.library(), &mut names);
+    let library = library(map, sources.stdlib(), &mut names);
     let functions = logix::library_functions();
     let library = st::library(&library, &names, &functions, &Constants);
     Some(logix::analyze(&project, library, &options, found))
@@ -170,7 +170,7 @@ fn check_text(
     found: &mut Diagnostics,
 ) -> Option<(hir::Program, Suite)> {
     let mut names = Names::new();
-    let library = library(map, sources.library(), &mut names);
+    let library = library(map, sources.stdlib(), &mut names);
     let parse = |id: &FileId| {
         let source = map.file(*id);
         let mut file = parse_file(*id, source.text(), options.dialect, &mut names, found);

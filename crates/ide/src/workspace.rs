@@ -17,7 +17,7 @@ pub struct Workspace<E> {
     entry: Option<String>,
     evaluator: E,
     names: Names,
-    library: Vec<File>,
+    stdlib: Vec<File>,
     files: Vec<Edited>,
     kept: Kept,
 }
@@ -40,21 +40,21 @@ impl<E: Evaluator> Workspace<E> {
             entry: entry.map(str::to_owned),
             evaluator,
             names: Names::new(),
-            library: Vec::new(),
+            stdlib: Vec::new(),
             files: Vec::new(),
             kept: Kept::default(),
         };
-        workspace.read_library();
+        workspace.read_stdlib();
         workspace
     }
 
-    fn read_library(&mut self) {
+    fn read_stdlib(&mut self) {
         let mut found = Diagnostics::new();
         for file in iecc_stdlib::IEC {
             let id = self.map.add(file.path, file.text);
             let names = &mut self.names;
             let tree = parse_file(id, file.text, Dialect::Iec, names, &mut found);
-            self.library.push(tree);
+            self.stdlib.push(tree);
         }
         assert!(found.is_empty(), "the library follows the grammar");
         st::intern_words(&mut self.names);
@@ -110,7 +110,7 @@ impl<E: Evaluator> Workspace<E> {
         let trees = parsed.map(|one| &one.file);
         let (evaluator, kept) = (&self.evaluator, &mut self.kept);
         st::recheck(
-            &self.library,
+            &self.stdlib,
             trees,
             &self.names,
             options,

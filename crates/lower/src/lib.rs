@@ -183,7 +183,7 @@ impl Lowering<'_> {
     }
 
     /// A library function, linked on first use.
-    fn library(&mut self, name: &str, unit_ns: u64) -> FuncId {
+    fn library_function(&mut self, name: &str, unit_ns: u64) -> FuncId {
         self.library
             .link(name, unit_ns, &mut self.funcs, &mut self.types)
     }

@@ -58,17 +58,7 @@ pub(crate) fn goes_back(func: &Function) -> bool {
     if func.layout.len() == 1 {
         return matches!(func.terminator(func.entry()), Terminator::Jump(_));
     }
-    let cfg = Cfg::new(func);
-    let mut position = SecondaryMap::with_default(0);
-    for (index, &block) in cfg.reverse_postorder().iter().enumerate() {
-        position[block] = index;
-    }
-    let mut blocks = cfg.reverse_postorder().iter();
-    blocks.any(|&from| {
-        cfg.successors(from)
-            .iter()
-            .any(|&to| position[to] <= position[from])
-    })
+    Cfg::new(func).jumps_back().next().is_some()
 }
 
 /// Makes all returns jump to one.

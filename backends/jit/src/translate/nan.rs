@@ -8,9 +8,10 @@
 
 use super::Translator;
 use super::memory::Address;
-use crate::nan::{NanBits, canonical_nan};
+use crate::nan::NanBits;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
+use iecc_ir::eval::canonical_nan;
 use iecc_ir::{CompareOp, ConvertOp, Function, Inst, InstData, Place, Type, Value};
 use std::collections::BTreeSet;
 

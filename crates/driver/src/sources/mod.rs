@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 pub struct Sources {
     language: Language,
     files: Vec<FileId>,
-    library: Vec<FileId>,
+    stdlib: Vec<FileId>,
 }
 
 impl Sources {
@@ -51,7 +51,7 @@ impl Sources {
         Self {
             language,
             files,
-            library,
+            stdlib: library,
         }
     }
 
@@ -95,8 +95,8 @@ impl Sources {
     }
 
     /// The files of the standard library, in order.
-    pub(crate) fn library(&self) -> &[FileId] {
-        &self.library
+    pub(crate) fn stdlib(&self) -> &[FileId] {
+        &self.stdlib
     }
 }
 

@@ -77,6 +77,19 @@ impl Cfg {
         &self.order
     }
 
+    /// Reachable blocks that jump to themselves or to a block before them in reverse postorder.
+    /// Without loops there are none.
+    pub fn jumps_back(&self) -> impl Iterator<Item = Block> + '_ {
+        let mut position = SecondaryMap::with_default(0);
+        for (index, &block) in self.order.iter().enumerate() {
+            position[block] = index;
+        }
+        self.order.iter().copied().filter(move |&block| {
+            let mut successors = self.successors[block].iter();
+            successors.any(|&to| position[to] <= position[block])
+        })
+    }
+
     /// Whether the entry leads to the block.
     pub fn is_reachable(&self, block: Block) -> bool {
         self.reachable.contains(block)

@@ -6,10 +6,10 @@
 
 use super::analysis::Analysis;
 use super::elementary::El;
+use super::overlay::steps_in_bytes;
 use super::resolve::TypeScope;
 use super::signature::{NamespaceId, Spot, Storage, UnitId};
 use super::types::{TypeId, TypeKind};
-use crate::hir::code::PathStep;
 use crate::hir::{self, Elementary, IoPoint, Place, Step, TagId, Type, View};
 use iecc_ast::st::{self, AddressSize, Area, Direct, ExprKind, UnitKind};
 use iecc_diag::{Code, Diagnostics};
@@ -529,35 +529,11 @@ impl Analysis<'_> {
             };
             return Some(Spot { tag, steps });
         }
-        let (byte, bit) = (
-            ((address.first - cluster.first) / 8) as u32,
-            (address.first % 8) as u32,
-        );
+        let first = (address.first - cluster.first) as u32;
         let Type::Elementary(of) = storage else {
             return None;
         };
-        let steps = match of {
-            Elementary::Bool => vec![
-                PathStep::Index(byte),
-                PathStep::Bits {
-                    first: bit,
-                    count: 1,
-                },
-            ],
-            Elementary::Usint => vec![PathStep::Index(byte)],
-            Elementary::Sint
-            | Elementary::Int
-            | Elementary::Uint
-            | Elementary::Dint
-            | Elementary::Udint
-            | Elementary::Lint
-            | Elementary::Ulint
-            | Elementary::Real
-            | Elementary::Lreal => vec![PathStep::Bytes {
-                offset: byte,
-                ty: of,
-            }],
-        };
+        let steps = steps_in_bytes(first, of);
         Some(Spot { tag, steps })
     }
 

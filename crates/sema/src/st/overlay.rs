@@ -176,28 +176,33 @@ impl Analysis<'_> {
         let Type::Elementary(of) = self.storage(ty) else {
             panic!("only numbers overlap");
         };
-        let byte = first / 8;
-        match of {
-            Elementary::Bool => vec![
-                PathStep::Index(byte),
-                PathStep::Bits {
-                    first: first % 8,
-                    count: 1,
-                },
-            ],
-            Elementary::Usint => vec![PathStep::Index(byte)],
-            Elementary::Sint
-            | Elementary::Int
-            | Elementary::Uint
-            | Elementary::Dint
-            | Elementary::Udint
-            | Elementary::Lint
-            | Elementary::Ulint
-            | Elementary::Real
-            | Elementary::Lreal => vec![PathStep::Bytes {
-                offset: byte,
-                ty: of,
-            }],
-        }
+        steps_in_bytes(first, of)
+    }
+}
+
+/// The way to a number in bytes, from the bit where it begins.
+pub(crate) fn steps_in_bytes(first: u32, of: Elementary) -> Vec<PathStep> {
+    let byte = first / 8;
+    match of {
+        Elementary::Bool => vec![
+            PathStep::Index(byte),
+            PathStep::Bits {
+                first: first % 8,
+                count: 1,
+            },
+        ],
+        Elementary::Usint => vec![PathStep::Index(byte)],
+        Elementary::Sint
+        | Elementary::Int
+        | Elementary::Uint
+        | Elementary::Dint
+        | Elementary::Udint
+        | Elementary::Lint
+        | Elementary::Ulint
+        | Elementary::Real
+        | Elementary::Lreal => vec![PathStep::Bytes {
+            offset: byte,
+            ty: of,
+        }],
     }
 }
