@@ -181,6 +181,49 @@ fn names_and_subscripts_are_those_of_the_program() {
     assert!(found.contains("which has elements 1 to 3"), "{found}");
 }
 
+/// A name belongs to whoever declares it, however others with the same letters are spelled.
+#[test]
+fn names_are_spelled_as_where_they_are_declared() {
+    let text = "FUNCTION_BLOCK Valve
+VAR ET : INT := 5; END_VAR
+METHOD PUBLIC M : INT m := et; END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM main
+VAR_INPUT Speed : INT; END_VAR
+VAR_OUTPUT m : INT; END_VAR
+VAR v : VALVE; SPEEDS : ARRAY[0..1] OF limits; END_VAR
+M := V.m() + speed + speeds[1].HIGH;
+END_PROGRAM
+TYPE Limits : STRUCT High : INT; END_STRUCT; END_TYPE
+";
+    let folder = folder(&[("main.st", text)]);
+    let watch = ["main.st", "--scans", "1", "--watch", "V,speeds[1].HIGH"];
+    let found = trace(folder.path(), &watch);
+    assert_eq!(found, "t_ms,Speed,m,v.ET,SPEEDS[1].High\n0,0,5,5,0\n");
+    let build = ["build", "main.st", "--target", "verilog", "-o", "out"];
+    let output = iecc(folder.path(), &build);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let module = fs::read_to_string(folder.path().join("out/main.v")).expect("a module");
+    assert!(
+        module.contains("[15:0] Speed,") && module.contains("[15:0] m "),
+        "{module}"
+    );
+    let output = iecc(
+        folder.path(),
+        &["build", "main.st", "--target", "jit", "-o", "object"],
+    );
+    assert!(output.status.success(), "{}", stderr(&output));
+    let header = fs::read_to_string(folder.path().join("object/main_.h")).expect("a header");
+    assert!(
+        header.contains("int16_t Speed;") && header.contains("int16_t m;"),
+        "{header}"
+    );
+    assert!(
+        header.contains("int16_t High;") && header.contains("int16_t ET;"),
+        "{header}"
+    );
+}
+
 #[test]
 fn the_entry_says_which_program_runs() {
     let folder = folder(&[("main.st", MAIN), ("other.st", OTHER)]);

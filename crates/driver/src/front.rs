@@ -174,7 +174,7 @@ fn check_text(
     let parse = |id: &FileId| {
         let source = map.file(*id);
         let mut file = parse_file(*id, source.text(), options.dialect, &mut names, found);
-        file.name = list_name(source.name()).map(|name| names.reserve(name));
+        file.name = list_name(source.name()).map(|name| names.intern(name));
         file
     };
     let files: Vec<File> = sources.files().iter().map(parse).collect();
@@ -217,8 +217,6 @@ pub(crate) fn library(map: &SourceMap, files: &[FileId], names: &mut Names) -> V
         panic!("the library does not follow the grammar: {mistake:?}");
     }
     st::intern_words(names);
-    // Names have the spelling in which the user writes them first.
-    names.reserve_all();
     library
 }
 

@@ -58,8 +58,6 @@ impl<E: Evaluator> Workspace<E> {
         }
         assert!(found.is_empty(), "the library follows the grammar");
         st::intern_words(&mut self.names);
-        // Names have the spelling in which the user writes them first.
-        self.names.reserve_all();
     }
 
     /// Adds a file under the name that messages show. Files count in the order in which they were
@@ -127,7 +125,7 @@ impl<E: Evaluator> Workspace<E> {
             let source = self.map.file(file.id);
             let (names, before) = (&mut self.names, file.parsed.take());
             let mut parsed = reparse_file(file.id, source.text(), self.dialect, names, before);
-            parsed.file.name = list_name(source.name()).map(|name| names.reserve(name));
+            parsed.file.name = list_name(source.name()).map(|name| names.intern(name));
             st::intern_hidden(names, std::slice::from_ref(&parsed.file));
             file.parsed = Some(parsed);
             file.changed = false;

@@ -28,7 +28,7 @@ pub struct Tokens<'t> {
 /// Makes tokens of a text, and enters its names.
 pub fn lex<'t>(file: FileId, text: &'t str, dialect: Dialect, names: &mut Names) -> Tokens<'t> {
     let keywords = Keywords::new(dialect, names);
-    let no_name = names.reserve("?");
+    let no_name = names.intern("?");
     let mut raw = Raw::lexer(text);
     raw.bump(byte_order_mark(text));
     let mut lexer = StLexer {

@@ -379,7 +379,7 @@ impl Keywords {
     pub(crate) fn new(dialect: Dialect, names: &mut iecc_ast::Names) -> Self {
         let mut by_symbol = Vec::new();
         let mut enter = |spelling: &str, kind, soft| {
-            let index = names.reserve(spelling).index();
+            let index = names.intern(spelling).index();
             by_symbol.resize(by_symbol.len().max(index + 1), None);
             by_symbol[index] = Some((kind, soft));
         };

@@ -68,6 +68,6 @@ fn comments_stand_wherever_white_space_may() {
 fn keywords_and_names_ignore_case() {
     assert_eq!(
         statements("iF Abc then aBC := x mod 2; eNd_If;"),
-        "if Abc\n  := Abc (MOD x 2:Decimal)\n"
+        "if Abc\n  := aBC (MOD x 2:Decimal)\n"
     );
 }

@@ -77,7 +77,7 @@ fn words_of_tests_are_names_where_a_name_can_stand() {
     );
     assert_eq!(
         statements("mock := 1; MOCK; test(setup := 'a');"),
-        ":= mock 1:Decimal\ndo mock\ndo (call test setup:=(single \"a\"))\n"
+        ":= mock 1:Decimal\ndo MOCK\ndo (call test setup:=(single \"a\"))\n"
     );
 }
 

@@ -108,14 +108,23 @@ impl<'m> Names<'m> {
 
     /// The place a path names.
     pub(super) fn find(&self, path: &str) -> Result<Place, NameError> {
+        self.find_spelled(path).map(|(_, place)| place)
+    }
+
+    /// The place a path names, and the path as the program spells it.
+    pub(super) fn find_spelled(&self, path: &str) -> Result<(String, Place), NameError> {
         let ends = path.match_indices(['.', '[']).map(|(at, _)| at);
         let ends: Vec<usize> = ends.chain([path.len()]).collect();
         let head = ends.iter().rev().find_map(|&end| {
             let found = self.heads.get(&path[..end].to_ascii_lowercase());
-            found.map(|(_, place)| (end, place.clone()))
+            found.map(|(name, place)| (*name, end, place.clone()))
         });
         match head {
-            Some((end, place)) => self.walk(path, end, place).map(|place| self.public(place)),
+            Some((name, end, place)) => {
+                let mut spelled = name.to_owned();
+                let place = self.walk(path, end, place, &mut spelled)?;
+                Ok((spelled, self.public(place)))
+            }
             None => {
                 let name = &path[..ends[0]];
                 let known = self.heads.values().map(|(name, _)| *name);
@@ -131,7 +140,13 @@ impl<'m> Names<'m> {
         input.map_or(place, |(input, _)| input.clone())
     }
 
-    fn walk(&self, path: &str, mut at: usize, mut place: Place) -> Result<Place, NameError> {
+    fn walk(
+        &self,
+        path: &str,
+        mut at: usize,
+        mut place: Place,
+        spelled: &mut String,
+    ) -> Result<Place, NameError> {
         while at < path.len() {
             let before = &path[..at];
             let Some(PlaceType::Mem(ty)) = self.type_of(&place) else {
@@ -146,10 +161,13 @@ impl<'m> Names<'m> {
                 for index in rest[..close].split(',') {
                     place = self.element(before, place, index.trim())?;
                 }
+                spelled.push_str(&path[at..at + close + 2]);
                 at += close + 2;
             } else if let Some(rest) = path[at..].strip_prefix('.') {
                 let end = rest.find(['.', '[']).unwrap_or(rest.len());
                 place = self.part(before, place, ty, &rest[..end])?;
+                spelled.push('.');
+                spelled.push_str(self.last_name(&place).unwrap_or(&rest[..end]));
                 at += end + 1;
             } else {
                 let rest = &path[at..];
@@ -159,6 +177,12 @@ impl<'m> Names<'m> {
             }
         }
         Ok(place)
+    }
+
+    /// The name of the member that a place ends with.
+    fn last_name(&self, place: &Place) -> Option<&'m str> {
+        let (id, field) = field_at(self.module, place)?;
+        Some(&self.module.types.structs[id].fields[field as usize].name)
     }
 
     /// What lies at a place of a region.
@@ -464,6 +488,23 @@ b0:
         }
         assert_eq!(show(&module, &watch.find("motor").unwrap()), "output.Motor");
         assert_eq!(show(&module, &set.find("motor").unwrap()), "state.Motor");
+    }
+
+    #[test]
+    fn paths_are_shown_as_the_program_spells_them() {
+        let module = parse_module(MODULE).unwrap();
+        let names = Names::to_watch(&module);
+        for (path, expected) in [
+            ("start", "Start"),
+            ("T.pre", "t.PRE"),
+            ("WORD.15", "Word.15"),
+            ("GRID[1, 2].7", "grid[1, 2].7"),
+            ("B.Speed", "b.speed"),
+        ] {
+            let spelled = names.find_spelled(path).unwrap().0;
+            assert!(spelled.eq_ignore_ascii_case(path), "{path}");
+            assert_eq!(spelled, expected, "{path}");
+        }
     }
 
     #[test]

@@ -313,9 +313,9 @@ fn watched(module: &Module, paths: &[String], diagnostics: &mut Diagnostics) -> 
     let names = Names::to_watch(module);
     let (mut watches, mut faultless) = (Vec::<Watch>::new(), true);
     for path in paths {
-        let found = names.find(path.trim());
+        let found = names.find_spelled(path.trim());
         let found =
-            found.and_then(|place| leaves(module, path.trim(), &place, MAX_VALUES_PER_WATCH));
+            found.and_then(|(path, place)| leaves(module, &path, &place, MAX_VALUES_PER_WATCH));
         match found {
             Ok(found) => {
                 for (name, place) in found {

@@ -110,7 +110,7 @@ const STIMULUS: &str = "t_ms,Start,lamps\n0,1,\n25,,100\n31,0,\n";
 fn a_trace_holds_inputs_outputs_and_watches_after_each_scan() {
     let prepared = prepare(&["t", "lamps.0", "LAMPS", "r", "lamp", "t.acc"], STIMULUS);
     let expected = "\
-t_ms,Start,Stop,Lamp,t.DN,t.PRE,t.ACC,lamps.0,LAMPS,r
+t_ms,Start,Stop,Lamp,t.DN,t.PRE,t.ACC,lamps.0,lamps,r
 0,1,0,0,0,20,0,0,0,0.5
 10,1,0,0,0,20,10,0,0,0.5
 20,1,0,1,1,20,20,1,1,0.5

@@ -37,7 +37,7 @@ pub fn intern_hidden(names: &mut Names, files: &[File]) {
                 Member::Property(property) => {
                     for (word, accessor) in [("GET", property.get), ("SET", property.set)] {
                         let own = format!("{own}.{word}");
-                        names.reserve(&own);
+                        names.intern(&own);
                         if let Some(accessor) = accessor {
                             intern_kept(names, unit, accessor.sections, &own);
                         }
@@ -61,7 +61,7 @@ fn intern_kept(names: &mut Names, unit: &Unit, sections: List<VarSection>, own: 
             .flat_map(|decl| &unit.arena[decl.names])
         {
             let name = format!("{own}.{}", names.text(ident.name));
-            names.reserve(&name);
+            names.intern(&name);
         }
     }
 }

@@ -90,14 +90,14 @@ pub struct Options {
 /// called before [`analyze`], which cannot add names.
 pub fn intern_words(names: &mut Names) {
     for word in WORDS {
-        names.reserve(word);
+        names.intern(word);
     }
     for el in El::ALL {
-        names.reserve(el.name());
-        names.reserve(el.short_name());
+        names.intern(el.name());
+        names.intern(el.short_name());
     }
     for word in ["STRING", "WSTRING"] {
-        names.reserve(word);
+        names.intern(word);
     }
     testing::intern_words(names);
 }

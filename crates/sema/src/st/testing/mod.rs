@@ -209,7 +209,7 @@ impl Word {
 /// Gives the words of tests their symbols.
 pub(crate) fn intern_words(names: &mut Names) {
     for word in Word::all() {
-        names.reserve(word.name());
+        names.intern(word.name());
     }
 }
 
