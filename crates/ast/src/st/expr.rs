@@ -117,6 +117,17 @@ pub enum ExprKind {
     Error,
 }
 
+impl ExprKind {
+    /// The name, where it is nothing else.
+    pub fn name(self) -> Option<Symbol> {
+        if let Self::Name(name) = self {
+            Some(name)
+        } else {
+            None
+        }
+    }
+}
+
 /// An element in the parentheses of a call.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Argument {

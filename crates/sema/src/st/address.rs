@@ -175,12 +175,10 @@ impl Analysis<'_> {
 
     /// The area of an address that VAR_CONFIG gives.
     pub(crate) fn partly_area(&self, unit: UnitId, id: st::Id<st::Expr>) -> Option<Area> {
-        match self.unit(unit).arena[id].kind {
-            ExprKind::Direct(Direct {
-                fields: None, area, ..
-            }) => area,
-            _ => None,
-        }
+        let ExprKind::Direct(direct) = self.unit(unit).arena[id].kind else {
+            return None;
+        };
+        direct.area.filter(|_| direct.fields.is_none())
     }
 
     /// Whether an address is one that VAR_CONFIG gives.
@@ -192,20 +190,15 @@ impl Analysis<'_> {
     pub(crate) fn member_location(&mut self, unit: UnitId, decl: &st::VarDecl) -> Option<Area> {
         let location = decl.location?;
         let written = self.unit(unit).arena[location];
-        match written.kind {
-            ExprKind::Direct(Direct {
-                area: Some(area),
-                fields: None,
-                ..
-            }) => return Some(area),
-            // `overlay` looks at it.
-            ExprKind::Direct(Direct { area: None, .. }) => {}
-            _ => {
-                let span = self.span(unit, written.range);
-                let message = "a member is at a place in the structure (%B4), or at `*`";
-                self.error(Code::E2003, span, message);
-            }
+        if let ExprKind::Direct(direct) = written.kind
+            && (direct.area.is_none() || direct.fields.is_none())
+        {
+            // `overlay` looks at places in the structure, which have no area.
+            return direct.area;
         }
+        let span = self.span(unit, written.range);
+        let message = "a member is at a place in the structure (%B4), or at `*`";
+        self.error(Code::E2003, span, message);
         None
     }
 

@@ -228,14 +228,16 @@ impl<'a> Analysis<'a> {
         path: st::Id<st::Expr>,
     ) -> Option<&[Def]> {
         let arena = &self.unit(unit).arena;
-        match arena[path].kind {
-            st::ExprKind::Name(name) => Some(self.lookup(namespace, name)),
-            st::ExprKind::Member { base, member } => match self.path(unit, namespace, base)? {
-                [Def::Namespace(inner)] => Some(self.lookup_in(*inner, member.name)),
-                _ => None,
-            },
-            _ => None,
+        let written = arena[path].kind;
+        if let Some(name) = written.name() {
+            return Some(self.lookup(namespace, name));
         }
+        if let st::ExprKind::Member { base, member } = written
+            && let [Def::Namespace(inner)] = self.path(unit, namespace, base)?
+        {
+            return Some(self.lookup_in(*inner, member.name));
+        }
+        None
     }
 
     /// Whether a unit is part of the library.

@@ -273,10 +273,7 @@ impl Analysis<'_> {
             let ProgramElement::Source { variable, .. } = element else {
                 return None;
             };
-            match arena[*variable].kind {
-                st::ExprKind::Name(name) => Some(name),
-                _ => None,
-            }
+            arena[*variable].kind.name()
         });
         names.collect()
     }
@@ -338,10 +335,7 @@ impl Analysis<'_> {
                 continue;
             };
             let found = self.path_member(start, name);
-            let block = found.and_then(|found| match self.types.base(found.ty) {
-                TypeKind::Instance(block) => Some((found.place, *block)),
-                _ => None,
-            });
+            let block = found.and_then(|found| Some((found.place, self.types.instance(found.ty)?)));
             let Some((place, block)) = block else {
                 let message = format!("`{}` is no block of the program", self.text(name));
                 self.error(Message::E1018, span, message);
@@ -371,9 +365,9 @@ impl Analysis<'_> {
     /// Whether the body of a program calls one of its instances.
     fn calls_block(&self, program: PouId, block: Symbol) -> bool {
         let arena = &self.unit(self.pou(program).unit).arena;
-        arena.all::<st::Expr>().iter().any(|expr| match expr.kind {
-            st::ExprKind::Call { callee, .. } => arena[callee].kind == st::ExprKind::Name(block),
-            _ => false,
+        arena.all::<st::Expr>().iter().any(|expr| {
+            matches!(expr.kind, st::ExprKind::Call { callee, .. }
+                if arena[callee].kind == st::ExprKind::Name(block))
         })
     }
 
@@ -423,17 +417,14 @@ impl Analysis<'_> {
                 continue;
             };
             for access in &arena[accesses] {
-                let found = match arena[access.path].kind {
-                    st::ExprKind::Name(name) => {
-                        let start = Found {
-                            place: Place::whole(tag),
-                            ty: self.types.intern(TypeKind::Instance(program)),
-                            partly: false,
-                        };
-                        self.path_member(start, name)
-                    }
-                    _ => None,
-                };
+                let found = arena[access.path].kind.name().and_then(|name| {
+                    let start = Found {
+                        place: Place::whole(tag),
+                        ty: self.types.intern(TypeKind::Instance(program)),
+                        partly: false,
+                    };
+                    self.path_member(start, name)
+                });
                 let Some(found) = found else {
                     let span = self.span(unit, arena[access.path].range);
                     let message = "this is no variable of the program";

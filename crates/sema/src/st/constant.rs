@@ -3,7 +3,7 @@
 //! Whole numbers are exact; a result that does not fit its type is a mistake, never wrapped. Reals
 //! are IEEE 754 in the width of their type.
 
-use super::elementary::El;
+use super::elementary::{El, Family};
 use std::rc::Rc;
 
 /// A value.
@@ -38,14 +38,18 @@ impl Const {
 
     /// The value of an elementary type with some bits.
     pub fn from_bits(el: El, bits: u64) -> Self {
-        match el {
-            El::Real => Self::Real(f64::from(f32::from_bits(bits as u32))),
-            El::Lreal => Self::Real(f64::from_bits(bits)),
-            _ if el.range().0 < 0 => {
+        match el.family() {
+            Family::Real if el == El::Real => Self::Real(f64::from(f32::from_bits(bits as u32))),
+            Family::Real => Self::Real(f64::from_bits(bits)),
+            Family::Signed
+            | Family::Duration
+            | Family::Date
+            | Family::TimeOfDay
+            | Family::DateTime => {
                 let shift = 64 - el.bits();
                 Self::Int(i128::from(((bits << shift) as i64) >> shift))
             }
-            _ => Self::Int(i128::from(bits)),
+            Family::Bits | Family::Unsigned | Family::Character => Self::Int(i128::from(bits)),
         }
     }
 

@@ -171,10 +171,8 @@ impl El {
             | (Family::Bits, Family::Bits)
             | (Family::Unsigned, Family::Signed)
             | (Family::Real, Family::Real) => wider,
-            (Family::Signed | Family::Unsigned, Family::Real) => match to {
-                El::Real => self.bits() <= 16,
-                _ => self.bits() <= 32,
-            },
+            // A LREAL holds every DINT, a REAL every INT.
+            (Family::Signed | Family::Unsigned, Family::Real) => 2 * self.bits() <= to.bits(),
             (a, b) => a == b && !self.is_long_time() && to.is_long_time() && a != Family::Character,
         }
     }

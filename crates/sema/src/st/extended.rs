@@ -2,7 +2,7 @@
 
 use super::analysis::Analysis;
 use super::resolve::TypeScope;
-use super::types::{Member, StructDef, TypeId, TypeKind};
+use super::types::{Member, StructDef, TypeId};
 use iecc_ast::st;
 use iecc_diag::Code;
 use rustc_hash::FxHashMap;
@@ -46,12 +46,7 @@ impl Analysis<'_> {
     }
 
     fn plain_struct(&self, ty: TypeId) -> Option<StructDef> {
-        match self.types.base(ty) {
-            TypeKind::Struct(index) => {
-                let def = self.types.structs[*index as usize].clone();
-                def.overlay.is_none().then_some(def)
-            }
-            _ => None,
-        }
+        let def = self.types.structure(ty)?;
+        def.overlay.is_none().then(|| def.clone())
     }
 }

@@ -1,17 +1,17 @@
 //! Initial values and other constants: what stands in declarations.
 
+mod array;
+
 use super::analysis::Analysis;
 use super::body::{Body, Operand};
 use super::constant::Const;
 use super::elementary::El;
 use super::resolve::TypeScope;
-use super::signature::{Initial, PouId, Storage};
-use super::storage::extent;
+use super::signature::{Initial, PouId};
 use super::types::{TypeId, TypeKind};
 use crate::hir::{InitId, code::Init};
 use iecc_ast::st::{self, ArgumentKind, ExprKind};
 use iecc_diag::{Code, Diagnostic};
-use iecc_source::TextRange;
 
 impl Analysis<'_> {
     /// A constant of a type; a message if it is none.
@@ -68,10 +68,8 @@ impl Analysis<'_> {
 
     /// The elementary type behind a type whose constants are numbers.
     pub(crate) fn constant_type(&self, ty: TypeId) -> Option<El> {
-        match self.types.base(ty) {
-            TypeKind::Enum(index) => Some(self.types.enums[*index as usize].base),
-            _ => self.types.elementary(ty),
-        }
+        let enumeration = self.types.enumeration(ty);
+        enumeration.map_or_else(|| self.types.elementary(ty), |def| Some(def.base))
     }
 
     /// The initial value of a variable; `None` if all of it is 0.
@@ -148,168 +146,6 @@ impl Analysis<'_> {
                 (bits != 0).then(|| self.init(Init::Bits(bits)))
             }
         }
-    }
-
-    /// The values of an array in the order of its elements, then of its dimensions.
-    fn array_value(
-        &mut self,
-        scope: TypeScope<'_>,
-        values: st::List<st::Id<st::Expr>>,
-        dimensions: &[(i64, i64)],
-        element: TypeId,
-        range: TextRange,
-    ) -> Option<InitId> {
-        let total: u64 = dimensions.iter().map(|d| u64::from(extent(*d))).product();
-        let mut runs: Vec<(u64, u64, Option<InitId>)> = Vec::new();
-        let mut at = 0u64;
-        self.element_values(scope, values, element, &mut runs, &mut at, total);
-        if at > total {
-            let span = self.span(scope.unit, range);
-            let message = format!("the array has {total} elements but {at} values are given");
-            self.error(Code::E2008, span, message);
-            return None;
-        }
-        let default = self.default_init(element);
-        if at < total && default.is_some() {
-            runs.push((at, total - at, default));
-        }
-        self.nested_runs(&runs, dimensions, 0, total)
-    }
-
-    fn element_values(
-        &mut self,
-        scope: TypeScope<'_>,
-        values: st::List<st::Id<st::Expr>>,
-        element: TypeId,
-        runs: &mut Vec<(u64, u64, Option<InitId>)>,
-        at: &mut u64,
-        total: u64,
-    ) {
-        let arena = &self.unit(scope.unit).arena;
-        for &value in &arena[values] {
-            let repeated = match arena[value].kind {
-                ExprKind::Repeat { count, values } => Some((count, values.len(), Some(values))),
-                ExprKind::Call { callee, arguments } => {
-                    self.is_count(scope, callee)
-                        .then_some((callee, arguments.len(), None))
-                }
-                _ => None,
-            };
-            let Some((count, len, inner)) = repeated else {
-                let init = self.value_of(scope, value, element);
-                runs.push((*at, 1, init));
-                *at += 1;
-                continue;
-            };
-            let count = self
-                .constant_int(scope, count, TypeId::UNTYPED_INT)
-                .unwrap_or(0);
-            let count = u64::try_from(count).unwrap_or(0);
-            let start = runs.len();
-            if len == 0 {
-                let init = self.default_init(element);
-                runs.push((*at, count, init));
-                *at = at.saturating_add(count);
-                continue;
-            }
-            let first = *at;
-            match inner {
-                Some(inner) => {
-                    self.element_values(scope, inner, element, runs, at, total);
-                }
-                None => self.called_values(scope, value, element, runs, at),
-            }
-            let (once, made) = (*at - first, runs[start..].to_vec());
-            if let [(_, 1, init)] = made[..] {
-                runs[start].1 = count;
-                *at = first.saturating_add(count);
-                let _ = init;
-                continue;
-            }
-            for round in 1..count {
-                if *at > total || runs.len() > (1 << 20) {
-                    *at = first.saturating_add(once.saturating_mul(count));
-                    break;
-                }
-                let shift = round * once;
-                runs.extend(made.iter().map(|(from, n, init)| (from + shift, *n, *init)));
-                *at += once;
-            }
-        }
-    }
-
-    /// Whether what looks like a call is a named constant that says how often values stand there.
-    fn is_count(&mut self, scope: TypeScope<'_>, callee: st::Id<st::Expr>) -> bool {
-        let arena = &self.unit(scope.unit).arena;
-        let ExprKind::Name(name) = arena[callee].kind else {
-            return false;
-        };
-        let own = scope.pou.and_then(|pou| self.pou(pou).var(name));
-        own.is_some_and(|var| matches!(var.storage, Storage::Const(_)))
-            || matches!(
-                self.lookup(scope.namespace, name),
-                [super::signature::Def::Global(_)]
-            )
-    }
-
-    fn called_values(
-        &mut self,
-        scope: TypeScope<'_>,
-        call: st::Id<st::Expr>,
-        element: TypeId,
-        runs: &mut Vec<(u64, u64, Option<InitId>)>,
-        at: &mut u64,
-    ) {
-        let arena = &self.unit(scope.unit).arena;
-        let ExprKind::Call { arguments, .. } = arena[call].kind else {
-            return;
-        };
-        for argument in &arena[arguments] {
-            if let Some(value) = argument.value {
-                let init = self.value_of(scope, value, element);
-                runs.push((*at, 1, init));
-                *at += 1;
-            }
-        }
-    }
-
-    /// Runs over all elements as initial values of nested arrays.
-    fn nested_runs(
-        &mut self,
-        runs: &[(u64, u64, Option<InitId>)],
-        dimensions: &[(i64, i64)],
-        start: u64,
-        total: u64,
-    ) -> Option<InitId> {
-        let (first, inner) = dimensions.split_first().expect("at least one dimension");
-        let count = u64::from(extent(*first));
-        let mut made: Vec<(u32, u32, InitId)> = Vec::new();
-        if inner.is_empty() {
-            for &(from, n, init) in runs {
-                let (from, to) = (from.max(start), (from + n).min(start + total));
-                if let (Some(init), true) = (init, from < to) {
-                    made.push(((from - start) as u32, (to - from) as u32, init));
-                }
-            }
-        } else {
-            let each = total / count;
-            for position in 0..count {
-                let from = start + position * each;
-                let low = runs.partition_point(|(at, n, _)| at + n <= from);
-                let high = runs.partition_point(|(at, _, _)| *at < from + each);
-                let init = self.nested_runs(&runs[low..high], inner, from, each);
-                match (init, made.last_mut()) {
-                    (Some(init), Some((at, n, last)))
-                        if *last == init && u64::from(*at + *n) == position =>
-                    {
-                        *n += 1;
-                    }
-                    (Some(init), _) => made.push((position as u32, 1, init)),
-                    (None, _) => {}
-                }
-            }
-        }
-        (!made.is_empty()).then(|| self.init(Init::Array(made)))
     }
 
     fn struct_value(

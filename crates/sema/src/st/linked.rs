@@ -146,7 +146,19 @@ impl Analysis<'_> {
                 path: format!("{}[]", part.path),
                 repeated: true,
             }),
-            _ => {}
+            TypeKind::Error
+            | TypeKind::Nothing
+            | TypeKind::UntypedInt
+            | TypeKind::UntypedReal
+            | TypeKind::Null
+            | TypeKind::Elementary(_)
+            | TypeKind::Text { .. }
+            | TypeKind::Enum(_)
+            | TypeKind::Subrange { .. }
+            | TypeKind::OpenArray { .. }
+            | TypeKind::Interface(_)
+            | TypeKind::Reference(..)
+            | TypeKind::Alias(_) => {}
         }
     }
 

@@ -10,10 +10,6 @@
 //! only where they are used.
 
 #![expect(
-    clippy::wildcard_enum_match_arm,
-    reason = "trees and types have many kinds: whoever names some means all others alike"
-)]
-#![expect(
     clippy::needless_pass_by_value,
     reason = "operands are handed over: what was looked at is used once"
 )]

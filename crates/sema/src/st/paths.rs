@@ -82,7 +82,22 @@ impl Analysis<'_> {
                 self.written_parts(unit, base, parts)?;
                 parts.push(Part::Index(indices));
             }
-            _ => return None,
+            ExprKind::Literal(_)
+            | ExprKind::Typed { .. }
+            | ExprKind::Part { .. }
+            | ExprKind::Deref(_)
+            | ExprKind::Direct(_)
+            | ExprKind::This
+            | ExprKind::Super
+            | ExprKind::Null
+            | ExprKind::Ref(_)
+            | ExprKind::Call { .. }
+            | ExprKind::Unary { .. }
+            | ExprKind::Binary { .. }
+            | ExprKind::ArrayValue(_)
+            | ExprKind::Repeat { .. }
+            | ExprKind::StructValue(_)
+            | ExprKind::Error => return None,
         }
         Some(())
     }
@@ -165,7 +180,20 @@ impl Analysis<'_> {
                 })
             }
             TypeKind::Instance(pou) => self.path_variable(at.place, pou, name),
-            _ => None,
+            TypeKind::Error
+            | TypeKind::Nothing
+            | TypeKind::UntypedInt
+            | TypeKind::UntypedReal
+            | TypeKind::Null
+            | TypeKind::Elementary(_)
+            | TypeKind::Text { .. }
+            | TypeKind::Enum(_)
+            | TypeKind::Subrange { .. }
+            | TypeKind::Array { .. }
+            | TypeKind::OpenArray { .. }
+            | TypeKind::Interface(_)
+            | TypeKind::Reference(..)
+            | TypeKind::Alias(_) => None,
         }
     }
 

@@ -219,8 +219,7 @@ impl Analysis<'_> {
         } else {
             &mut self.hir.outputs
         };
-        let whole =
-            self.types.is_scalar(ty) || matches!(self.types.base(ty), TypeKind::Text { .. });
+        let whole = self.types.is_scalar(ty) || self.types.is_text(ty);
         if whole {
             points.push(IoPoint {
                 name: name.to_owned(),
@@ -248,7 +247,20 @@ impl Analysis<'_> {
                     self.points(&name, place, member.ty, input);
                 }
             }
-            _ => {}
+            TypeKind::Error
+            | TypeKind::Nothing
+            | TypeKind::UntypedInt
+            | TypeKind::UntypedReal
+            | TypeKind::Null
+            | TypeKind::Elementary(_)
+            | TypeKind::Text { .. }
+            | TypeKind::Enum(_)
+            | TypeKind::Subrange { .. }
+            | TypeKind::OpenArray { .. }
+            | TypeKind::Instance(_)
+            | TypeKind::Interface(_)
+            | TypeKind::Reference(..)
+            | TypeKind::Alias(_) => {}
         }
     }
 

@@ -344,7 +344,19 @@ impl Analysis<'_> {
                     }
                     return ty;
                 }
-                _ => return ty,
+                TypeKind::Error
+                | TypeKind::Nothing
+                | TypeKind::UntypedInt
+                | TypeKind::UntypedReal
+                | TypeKind::Null
+                | TypeKind::Elementary(_)
+                | TypeKind::Text { .. }
+                | TypeKind::Enum(_)
+                | TypeKind::Subrange { .. }
+                | TypeKind::OpenArray { .. }
+                | TypeKind::Interface(_)
+                | TypeKind::Reference(..)
+                | TypeKind::Alias(_) => return ty,
             }
         }
     }

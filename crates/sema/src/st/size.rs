@@ -10,11 +10,11 @@ use iecc_source::Span;
 impl Analysis<'_> {
     /// The bytes of a type, or why they are not told.
     pub(crate) fn size_of(&mut self, ty: TypeId) -> Result<u64, &'static str> {
-        match self.types.base(ty) {
-            TypeKind::Error | TypeKind::Nothing | TypeKind::OpenArray { .. } => {
-                return Err("it has no size of its own");
-            }
-            _ => {}
+        if matches!(
+            self.types.base(ty),
+            TypeKind::Error | TypeKind::Nothing | TypeKind::OpenArray { .. }
+        ) {
+            return Err("it has no size of its own");
         }
         if let Some(why) = self.packed_inside(ty) {
             return Err(why);
@@ -73,7 +73,20 @@ impl Analysis<'_> {
                 }
                 def.members.iter().find_map(|m| self.packed_inside(m.ty))
             }
-            _ => None,
+            TypeKind::Error
+            | TypeKind::Nothing
+            | TypeKind::UntypedInt
+            | TypeKind::UntypedReal
+            | TypeKind::Null
+            | TypeKind::Elementary(_)
+            | TypeKind::Text { .. }
+            | TypeKind::Enum(_)
+            | TypeKind::Subrange { .. }
+            | TypeKind::OpenArray { .. }
+            | TypeKind::Instance(_)
+            | TypeKind::Interface(_)
+            | TypeKind::Reference(..)
+            | TypeKind::Alias(_) => None,
         }
     }
 }

@@ -8,6 +8,7 @@ use super::signature::PouId;
 use iecc_ast::{Names, Symbol};
 use iecc_source::Span;
 use rustc_hash::FxHashMap;
+use std::ops::RangeInclusive;
 
 /// Names a type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -280,6 +281,74 @@ impl Types {
             | TypeKind::Reference(..)
             | TypeKind::Alias(_) => None,
         }
+    }
+
+    /// The enumeration that a type is.
+    pub fn enumeration(&self, id: TypeId) -> Option<&EnumDef> {
+        if let TypeKind::Enum(index) = self.base(id) {
+            Some(&self.enums[*index as usize])
+        } else {
+            None
+        }
+    }
+
+    /// The structure that a type is.
+    pub fn structure(&self, id: TypeId) -> Option<&StructDef> {
+        if let TypeKind::Struct(index) = self.base(id) {
+            Some(&self.structs[*index as usize])
+        } else {
+            None
+        }
+    }
+
+    /// The integer type of a subrange, and its values.
+    pub fn subrange(&self, id: TypeId) -> Option<(El, RangeInclusive<i128>)> {
+        if let TypeKind::Subrange { base, low, high } = *self.base(id) {
+            Some((base, low..=high))
+        } else {
+            None
+        }
+    }
+
+    /// The block, class or program that a type is the instances of.
+    pub fn instance(&self, id: TypeId) -> Option<PouId> {
+        if let TypeKind::Instance(of) = *self.base(id) {
+            Some(of)
+        } else {
+            None
+        }
+    }
+
+    /// The unit whose methods and properties values of a type have.
+    pub fn object(&self, id: TypeId) -> Option<PouId> {
+        if let TypeKind::Instance(of) | TypeKind::Interface(of) = *self.base(id) {
+            Some(of)
+        } else {
+            None
+        }
+    }
+
+    /// What a reference refers to.
+    pub fn target(&self, id: TypeId) -> Option<TypeId> {
+        if let TypeKind::Reference(_, target) = *self.base(id) {
+            Some(target)
+        } else {
+            None
+        }
+    }
+
+    /// What a reference refers to that stands for it without `^`.
+    pub fn implicit_target(&self, id: TypeId) -> Option<TypeId> {
+        if let TypeKind::Reference(ReferenceKind::Implicit, target) = *self.base(id) {
+            Some(target)
+        } else {
+            None
+        }
+    }
+
+    /// Whether it is a string.
+    pub fn is_text(&self, id: TypeId) -> bool {
+        matches!(self.base(id), TypeKind::Text { .. })
     }
 
     /// Whether a value of the type is one number in storage.

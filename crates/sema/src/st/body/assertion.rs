@@ -170,9 +170,10 @@ impl Body<'_, '_> {
         }
         let value = self.condition(&operand);
         let operand = self.hold(Operand::value(value, TypeId::BOOL, operand.range));
-        let holds = match kind {
-            CheckKind::False => self.unary_on(UnaryOp::Not, operand.clone(), range, None),
-            _ => operand.clone(),
+        let holds = if kind == CheckKind::False {
+            self.unary_on(UnaryOp::Not, operand.clone(), range, None)
+        } else {
+            operand.clone()
         };
         Tried::from((vec![operand], holds))
     }

@@ -44,11 +44,13 @@ impl Body<'_, '_> {
 
 /// The number with the bits of a bit string; others as they are.
 pub(super) fn counts_as(el: El) -> El {
-    match el {
-        El::Byte => El::Usint,
-        El::Word => El::Uint,
-        El::Dword => El::Udint,
-        El::Lword => El::Ulint,
-        other => other,
+    if !el.is_bits() || el == El::Bool {
+        return el;
+    }
+    match el.bits() {
+        8 => El::Usint,
+        16 => El::Uint,
+        32 => El::Udint,
+        _ => El::Ulint,
     }
 }

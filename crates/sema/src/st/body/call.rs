@@ -131,7 +131,7 @@ impl Body<'_, '_> {
             if operand.is_error() {
                 return;
             }
-            if let TypeKind::Instance(_) = self.an.types.base(operand.ty) {
+            if self.an.types.instance(operand.ty).is_some() {
                 let name = self.type_name(operand.ty);
                 let message = format!("an instance of {name} is called with parentheses");
                 self.error(Message::E3004, written.range, message);
@@ -247,16 +247,18 @@ impl Body<'_, '_> {
 
     fn callee(&mut self, id: st::Id<st::Expr>, range: TextRange) -> Option<Callee> {
         let written = self.arena()[id];
-        match written.kind {
-            Written::Name(name) => self.named_callee(name, id, written.range),
-            Written::Member { base, member } => self.member_callee(id, base, member),
-            Written::Super => {
-                let message = "SUPER() is a statement and gives no value";
-                self.error(Message::E3003, range, message);
-                None
-            }
-            _ => self.instance_callee(id),
+        if let Some(name) = written.kind.name() {
+            return self.named_callee(name, id, written.range);
         }
+        if let Written::Member { base, member } = written.kind {
+            return self.member_callee(id, base, member);
+        }
+        if written.kind == Written::Super {
+            let message = "SUPER() is a statement and gives no value";
+            self.error(Message::E3003, range, message);
+            return None;
+        }
+        self.instance_callee(id)
     }
 
     fn named_callee(
@@ -328,10 +330,8 @@ impl Body<'_, '_> {
         base: st::Id<st::Expr>,
         member: st::Ident,
     ) -> Option<Callee> {
-        let shadowed = match self.arena()[base].kind {
-            Written::Name(name) => self.own_symbol(name),
-            _ => false,
-        };
+        let name = self.arena()[base].kind.name();
+        let shadowed = name.is_some_and(|name| self.own_symbol(name));
         if !shadowed
             && let Some(&[Def::Namespace(namespace), ..]) =
                 self.an.path(self.unit, self.namespace, base)

@@ -92,14 +92,10 @@ impl Body<'_, '_> {
         let types = &self.an.types;
         match (types.kind(from_ty).clone(), types.kind(to_ty).clone()) {
             (_, TypeKind::Subrange { base, low, high }) => {
-                let (from_el, inside) = match types.kind(from_ty) {
-                    TypeKind::Subrange {
-                        base,
-                        low: l,
-                        high: h,
-                    } => (*base, low <= *l && *h <= high),
-                    _ => (types.elementary(from_ty)?, false),
-                };
+                let from_el = types.elementary(from_ty)?;
+                let known = types.subrange(from_ty);
+                let inside =
+                    known.is_some_and(|(_, given)| low <= *given.start() && *given.end() <= high);
                 let value = self.widen(operand, from_el, base)?;
                 if inside {
                     return Some(value);
@@ -128,12 +124,12 @@ impl Body<'_, '_> {
     /// The elementary type that a value becomes without being asked: in CODESYS a value of an
     /// enumeration is a number where one is needed.
     pub(super) fn number_behind(&self, ty: TypeId) -> Option<El> {
-        match self.an.types.base(ty) {
-            TypeKind::Enum(index) if self.an.options.codesys => {
-                Some(self.an.types.enums[*index as usize].base)
-            }
-            _ => self.named_base(ty),
+        if self.an.options.codesys
+            && let Some(enumeration) = self.an.types.enumeration(ty)
+        {
+            return Some(enumeration.base);
         }
+        self.named_base(ty)
     }
 
     /// The elementary type behind a type, named values included.

@@ -91,11 +91,33 @@ impl Body<'_, '_> {
                 self.no_arithmetic("a subscript computes with a pointer", range);
                 Operand::error(range)
             }
-            _ => {
+            TypeKind::Error
+            | TypeKind::Nothing
+            | TypeKind::UntypedInt
+            | TypeKind::UntypedReal
+            | TypeKind::Null
+            | TypeKind::Elementary(_)
+            | TypeKind::Enum(_)
+            | TypeKind::Subrange { .. }
+            | TypeKind::OpenArray { .. }
+            | TypeKind::Struct(_)
+            | TypeKind::Instance(_)
+            | TypeKind::Interface(_)
+            | TypeKind::Reference(..)
+            | TypeKind::Alias(_) => {
                 let message = format!("{} has no elements", self.type_name(base.ty));
                 self.error(Message::E2031, base.range, message)
             }
         }
+    }
+
+    /// The smallest and largest value of a type of whole numbers.
+    fn whole_values(&self, ty: TypeId) -> Option<(i128, i128)> {
+        if let Some((_, values)) = self.an.types.subrange(ty) {
+            return Some(values.into_inner());
+        }
+        let el = self.an.types.elementary(ty)?;
+        self.counts(el).then(|| el.range())
     }
 
     /// The step to an element.
@@ -113,18 +135,9 @@ impl Body<'_, '_> {
             }
             return Some(PathStep::Index((value - i128::from(low)) as u32));
         }
-        let inside = match self.an.types.base(operand.ty) {
-            TypeKind::Subrange {
-                low: first,
-                high: last,
-                ..
-            } => i128::from(low) <= *first && *last <= i128::from(high),
-            TypeKind::Elementary(el) if self.counts(*el) => {
-                let (first, last) = el.range();
-                i128::from(low) <= first && last <= i128::from(high)
-            }
-            _ => false,
-        };
+        let inside = self
+            .whole_values(operand.ty)
+            .is_some_and(|(first, last)| i128::from(low) <= first && last <= i128::from(high));
         let checked = inside || self.unchecked();
         let value = self.raw(&operand);
         Some(PathStep::IndexBy {

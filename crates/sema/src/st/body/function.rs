@@ -135,21 +135,19 @@ impl Body<'_, '_> {
             if operand.is_error() {
                 return None;
             }
-            match self.an.types.base(operand.ty) {
-                TypeKind::Array {
-                    dimensions: given,
-                    element: of,
-                } if given.len() == dimensions as usize
-                    && self.an.types.strip(*of) == self.an.types.strip(element) =>
-                {
-                    let ty = self.an.types.strip(operand.ty);
-                    bindings.open.push((var.name, ty));
-                }
-                _ => {
-                    self.mismatch(&operand, var.ty);
-                    return None;
-                }
+            let types = &self.an.types;
+            let fits = matches!(
+                types.base(operand.ty),
+                TypeKind::Array { dimensions: given, element: of }
+                    if given.len() == dimensions as usize
+                        && types.strip(*of) == types.strip(element)
+            );
+            if !fits {
+                self.mismatch(&operand, var.ty);
+                return None;
             }
+            let ty = types.strip(operand.ty);
+            bindings.open.push((var.name, ty));
         }
         Some(self.an.instance(callee, bindings))
     }

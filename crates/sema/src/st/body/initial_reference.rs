@@ -67,14 +67,15 @@ impl Body<'_, '_> {
             return None;
         }
         let value = self.as_scalar(&operand, ty);
-        match self.code.expr(value).kind {
-            ExprKind::Const(_) => return Some((value, None)),
-            ExprKind::Address(path) if self.pending.is_empty() => {
-                if let Some(target) = self.target(path) {
-                    return Some((value, Some(target)));
-                }
-            }
-            _ => {}
+        let kind = &self.code.expr(value).kind;
+        if matches!(kind, ExprKind::Const(_)) {
+            return Some((value, None));
+        }
+        if let &ExprKind::Address(path) = kind
+            && self.pending.is_empty()
+            && let Some(target) = self.target(path)
+        {
+            return Some((value, Some(target)));
         }
         let message = "at the start a reference is NULL, or REF of a variable that is always there";
         self.error(Message::E2030, operand.range, message);

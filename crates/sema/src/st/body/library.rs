@@ -145,13 +145,14 @@ impl Body<'_, '_> {
                     let slot = generics.iter_mut().find(|(known, _)| known == name);
                     slot.expect("found above").1 = joined;
                 }
-                ParameterType::OpenText { wide } => match *self.an.types.base(operand.ty) {
-                    TypeKind::Text { wide: w, .. } if w == *wide => {
-                        let ty = self.an.types.strip(operand.ty);
-                        bound.bindings.open.push((parameter.name, ty));
+                ParameterType::OpenText { wide } => {
+                    let ty = self.an.types.strip(operand.ty);
+                    if !matches!(self.an.types.kind(ty), TypeKind::Text { wide: w, .. } if w == wide)
+                    {
+                        return None;
                     }
-                    _ => return None,
-                },
+                    bound.bindings.open.push((parameter.name, ty));
+                }
                 ParameterType::Written(spec) => {
                     let ty = self.an.library_type(function, *spec);
                     if !self.fits(operand, ty) {
@@ -208,6 +209,14 @@ impl Body<'_, '_> {
         })
     }
 
+    /// Whether a generic name takes a type that is not elementary.
+    fn takes_other(&self, class: Generic, ty: TypeId) -> bool {
+        let types = &self.an.types;
+        class == Generic::Any
+            || types.is_text(ty) && class.takes_text()
+            || types.enumeration(ty).is_some() && class.takes_enum()
+    }
+
     /// The type of a generic name after one more argument. Literals leave it open.
     pub(super) fn join(
         &mut self,
@@ -224,14 +233,8 @@ impl Body<'_, '_> {
         }
         let ty = self.an.types.strip(operand.ty);
         let own = match self.an.types.elementary(ty) {
-            Some(el) if class.takes(el) => TypeId::of(el),
-            Some(_) => return None,
-            None => match self.an.types.kind(ty) {
-                TypeKind::Text { .. } if class.takes_text() => ty,
-                TypeKind::Enum(_) if class.takes_enum() => ty,
-                _ if class == Generic::Any => ty,
-                _ => return None,
-            },
+            Some(el) => class.takes(el).then(|| TypeId::of(el))?,
+            None => self.takes_other(class, ty).then_some(ty)?,
         };
         let Some(known) = known else {
             return Some(Some(own));

@@ -64,17 +64,15 @@ impl Body<'_, '_> {
             return Operand::error(range);
         }
         let arena = self.arena();
-        match arena[value].kind {
-            ExprKind::Name(name) => self.enumerator_of(ty, name, range),
-            ExprKind::Literal(id) => {
-                let literal = self.literal(&arena[id], range);
-                self.literal_as(literal, ty)
-            }
-            _ => {
-                let value = self.expr(value, Some(ty));
-                self.literal_as(value, ty)
-            }
+        if let Some(name) = arena[value].kind.name() {
+            return self.enumerator_of(ty, name, range);
         }
+        let operand = if let ExprKind::Literal(id) = arena[value].kind {
+            self.literal(&arena[id], range)
+        } else {
+            self.expr(value, Some(ty))
+        };
+        self.literal_as(operand, ty)
     }
 
     /// A literal in a type that is written in front of it.
@@ -177,7 +175,11 @@ impl Body<'_, '_> {
         match (self.number_behind(from.ty), types.elementary(to)) {
             (Some(a), Some(b)) if self.widens(a, b) => Some(match value {
                 Const::Int(number) if b.is_real() => Const::Real(round_to(b, *number as f64)),
-                other => other.clone(),
+                Const::Int(_)
+                | Const::Real(_)
+                | Const::Literal(..)
+                | Const::Text(_)
+                | Const::Null => value.clone(),
             }),
             _ => {
                 self.mismatch(from, to);

@@ -5,7 +5,7 @@ use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{LocalId, PathStep, Root};
 use crate::st::constant::Const;
 use crate::st::signature::{Def, PouId, Storage, Var};
-use crate::st::types::{ReferenceKind, TypeId, TypeKind};
+use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ExprKind as Written, PouKind, SectionKind};
 use iecc_diag::{Code as Message, Diagnostic};
@@ -25,7 +25,17 @@ impl Body<'_, '_> {
             Written::This => self.this(range),
             Written::Direct(_) => self.direct(id, None, range),
             Written::Super => self.error(Message::E3003, range, "SUPER stands in calls only"),
-            _ => self.expr(id, want),
+            Written::Literal(_)
+            | Written::Typed { .. }
+            | Written::Null
+            | Written::Ref(_)
+            | Written::Call { .. }
+            | Written::Unary { .. }
+            | Written::Binary { .. }
+            | Written::ArrayValue(_)
+            | Written::Repeat { .. }
+            | Written::StructValue(_)
+            | Written::Error => self.expr(id, want),
         }
     }
 
@@ -241,11 +251,9 @@ impl Body<'_, '_> {
             ty,
             range,
         };
-        match *self.an.types.base(ty) {
-            TypeKind::Reference(ReferenceKind::Implicit, target) => {
-                self.follow(&operand, target, range)
-            }
-            _ => operand,
+        match self.an.types.implicit_target(ty) {
+            Some(target) => self.follow(&operand, target, range),
+            None => operand,
         }
     }
 
@@ -388,7 +396,20 @@ impl Body<'_, '_> {
                 let place = place.clone();
                 self.instance_member(pou, &place, member, range)
             }
-            _ => {
+            TypeKind::Error
+            | TypeKind::Nothing
+            | TypeKind::UntypedInt
+            | TypeKind::UntypedReal
+            | TypeKind::Null
+            | TypeKind::Elementary(_)
+            | TypeKind::Text { .. }
+            | TypeKind::Enum(_)
+            | TypeKind::Subrange { .. }
+            | TypeKind::Array { .. }
+            | TypeKind::OpenArray { .. }
+            | TypeKind::Interface(_)
+            | TypeKind::Reference(..)
+            | TypeKind::Alias(_) => {
                 let message = format!("{} has no members", self.type_name(base.ty));
                 self.error(Message::E1002, member.range, message)
             }
@@ -494,9 +515,8 @@ impl Body<'_, '_> {
         let type_name = self.type_name(ty);
         let message = format!("{type_name} has no value `{}`", self.text(name));
         let mut diagnostic = Diagnostic::new(Message::E1016, self.span(range), message);
-        if let TypeKind::Enum(index) = *self.an.types.base(ty) {
-            let values = &self.an.types.enums[index as usize].values;
-            let candidates: Vec<Symbol> = values.iter().map(|(name, _)| *name).collect();
+        if let Some(def) = self.an.types.enumeration(ty) {
+            let candidates: Vec<Symbol> = def.values.iter().map(|(name, _)| *name).collect();
             if let Some(close) = self.an.similar(name, candidates) {
                 diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
             }
@@ -506,10 +526,7 @@ impl Body<'_, '_> {
     }
 
     fn find_enumerator(&self, ty: TypeId, name: Symbol, range: TextRange) -> Option<Operand> {
-        let TypeKind::Enum(index) = *self.an.types.base(ty) else {
-            return None;
-        };
-        let def = &self.an.types.enums[index as usize];
+        let def = self.an.types.enumeration(ty)?;
         let (_, value) = def.values.iter().find(|(known, _)| *known == name)?;
         let ty = self.an.types.strip(ty);
         Some(Operand::constant(Const::Int(*value), ty, range))
@@ -517,10 +534,8 @@ impl Body<'_, '_> {
 
     /// Whether the values of an enumeration are named with it alone.
     fn is_qualified(&self, ty: TypeId) -> bool {
-        match self.an.types.base(ty) {
-            TypeKind::Enum(index) => self.an.types.enums[*index as usize].qualified,
-            _ => false,
-        }
+        let enumeration = self.an.types.enumeration(ty);
+        enumeration.is_some_and(|def| def.qualified)
     }
 
     fn ambiguous_enumerator(
@@ -549,9 +564,9 @@ impl Body<'_, '_> {
         if base.is_error() {
             return base;
         }
-        match *self.an.types.base(base.ty) {
-            TypeKind::Reference(_, target) => self.follow(&base, target, range),
-            _ => {
+        match self.an.types.target(base.ty) {
+            Some(target) => self.follow(&base, target, range),
+            None => {
                 let message = format!("{} is no reference", self.type_name(base.ty));
                 self.error(Message::E2034, range, message)
             }
@@ -565,7 +580,7 @@ impl Body<'_, '_> {
         target: TypeId,
         range: TextRange,
     ) -> Operand {
-        if let TypeKind::Instance(pou) = *self.an.types.base(target) {
+        if let Some(pou) = self.an.types.instance(target) {
             self.an.complete(pou);
         }
         let address = self.raw(reference);

@@ -6,7 +6,7 @@ use super::call::Callee;
 use super::{Body, Operand, OperandKind, Rights};
 use crate::st::hidden::Property;
 use crate::st::signature::PouId;
-use crate::st::types::{ReferenceKind, TypeId, TypeKind};
+use crate::st::types::TypeId;
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ExprKind as Written};
 use iecc_diag::Code as Message;
@@ -82,13 +82,11 @@ impl Body<'_, '_> {
 
     /// The property of what an operand is, unless a variable has the name.
     fn property_in(&self, base: &Operand, name: Symbol) -> Option<Property> {
-        match *self.an.types.base(base.ty) {
-            TypeKind::Instance(of) if self.an.instance_var(of, name).is_none() => {
-                self.an.property(of, name)
-            }
-            TypeKind::Interface(of) => self.an.property(of, name),
-            _ => None,
+        let of = self.an.types.object(base.ty)?;
+        if self.an.instance_var(of, name).is_some() {
+            return None;
         }
+        self.an.property(of, name)
     }
 
     /// A property named alone.
@@ -106,19 +104,23 @@ impl Body<'_, '_> {
         })
     }
 
+    /// What a path leads to that may end at a property; `None` if no property can be meant.
+    fn target_with_properties(&mut self, written: st::Expr) -> Option<Target> {
+        if let Written::Member { base, member } = written.kind {
+            return Some(self.member_target(base, member, written.range, None));
+        }
+        let name = written
+            .kind
+            .name()
+            .filter(|name| !self.is_variable(*name))?;
+        let property = self.own_property_named(name, written.range);
+        property.map(Target::Property)
+    }
+
     /// What an assignment goes to.
     pub(super) fn assign_target(&mut self, target: st::Id<st::Expr>) -> Target {
         let written = self.arena()[target];
-        let found = match written.kind {
-            Written::Name(name) if !self.is_variable(name) => self
-                .own_property_named(name, written.range)
-                .map(Target::Property),
-            Written::Member { base, member } => {
-                Some(self.member_target(base, member, written.range, None))
-            }
-            _ => None,
-        };
-        match found {
+        match self.target_with_properties(written) {
             // A reference that is read is what it stands for.
             Some(Target::Property(property)) if self.gives_a_variable(&property) => {
                 let read = self.read_property(property, written.range);
@@ -151,11 +153,8 @@ impl Body<'_, '_> {
             return false;
         };
         self.an.complete(get);
-        let result = self.an.pou(get).result.map(|ty| self.an.types.base(ty));
-        matches!(
-            result,
-            Some(TypeKind::Reference(ReferenceKind::Implicit, _))
-        )
+        let result = self.an.pou(get).result;
+        result.is_some_and(|ty| self.an.types.implicit_target(ty).is_some())
     }
 
     /// Reads a property.
@@ -177,13 +176,13 @@ impl Body<'_, '_> {
 
     /// The result of a call, of which a REFERENCE stands for its target.
     pub(super) fn as_target(&mut self, result: Operand) -> Operand {
-        match *self.an.types.base(result.ty) {
-            TypeKind::Reference(ReferenceKind::Implicit, target) if !result.is_error() => {
+        match self.an.types.implicit_target(result.ty) {
+            Some(target) if !result.is_error() => {
                 let range = result.range;
                 let held = self.hold(result);
                 self.follow(&held, target, range)
             }
-            _ => result,
+            Some(_) | None => result,
         }
     }
 

@@ -99,13 +99,7 @@ impl Body<'_, '_> {
         if let TypeKind::Interface(pou) = *self.an.types.base(ty) {
             return Some(pou);
         }
-        let TypeKind::Reference(_, target) = *self.an.types.base(ty) else {
-            return None;
-        };
-        let TypeKind::Instance(pou) = *self.an.types.base(target) else {
-            return None;
-        };
-        Some(pou)
+        self.an.types.instance(self.an.types.target(ty)?)
     }
 
     /// `target ?= value`.

@@ -421,15 +421,14 @@ impl Body<'_, '_> {
     ) -> Option<StmtKind> {
         let operand = self.expr(selector, None);
         let ty = self.settle(&operand);
-        let compared = matches!(self.an.types.base(ty), TypeKind::Text { .. })
-            || self.an.types.elementary(ty).is_some_and(El::is_real);
+        let compared =
+            self.an.types.is_text(ty) || self.an.types.elementary(ty).is_some_and(El::is_real);
         if compared && !operand.is_error() {
             return Some(self.case_by_comparison(operand, arms, otherwise));
         }
-        let whole = match self.an.types.base(ty) {
-            TypeKind::Enum(_) => true,
-            _ => self.an.types.elementary(ty).is_some_and(|el| !el.is_real()),
-        };
+        let types = &self.an.types;
+        let whole =
+            types.enumeration(ty).is_some() || types.elementary(ty).is_some_and(|el| !el.is_real());
         if !whole && !operand.is_error() {
             let message = format!(
                 "CASE takes whole numbers and enumerators, not {}",
@@ -475,10 +474,9 @@ impl Body<'_, '_> {
         taken: &[(i128, i128, TextRange)],
         range: TextRange,
     ) {
-        let TypeKind::Enum(index) = *self.an.types.base(ty) else {
+        let Some(def) = self.an.types.enumeration(ty) else {
             return;
         };
-        let def = &self.an.types.enums[index as usize];
         let is_taken = |value: i128| {
             taken
                 .iter()
@@ -576,10 +574,8 @@ impl Body<'_, '_> {
             return None;
         }
         // Labels of a subrange may be any values of its base.
-        let ty = match self.an.types.base(ty) {
-            TypeKind::Subrange { base, .. } => TypeId::of(*base),
-            _ => ty,
-        };
+        let subrange = self.an.types.subrange(ty);
+        let ty = subrange.map_or(ty, |(base, _)| TypeId::of(base));
         self.constant_to(&operand, ty)?.as_int()
     }
 

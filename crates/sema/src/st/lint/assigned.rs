@@ -134,10 +134,12 @@ impl Walk<'_> {
         let mut stmts = Vec::new();
         arena.each_stmt_in(body, &mut |stmt| stmts.push(stmt));
         for stmt in stmts {
-            match arena[stmt].kind {
-                StmtKind::Assign { target, .. } => self.assign(target),
-                StmtKind::For { variable, .. } => self.assign(variable),
-                _ => {}
+            if let StmtKind::Assign { target, .. }
+            | StmtKind::For {
+                variable: target, ..
+            } = arena[stmt].kind
+            {
+                self.assign(target);
             }
             arena.each_expr_of(stmt, |expr| {
                 arena.each_expr_in(expr, &mut |part| self.assigned_by(part));
@@ -157,14 +159,14 @@ impl Walk<'_> {
 
     /// Calls may change what they are given, and a reference lets anybody.
     fn assigned_by(&mut self, expr: st::Id<st::Expr>) {
-        match self.arena[expr].kind {
-            ExprKind::Call { arguments, .. } => {
-                for argument in &self.arena[arguments] {
-                    self.passed(*argument);
-                }
+        let written = self.arena[expr].kind;
+        if let ExprKind::Call { arguments, .. } = written {
+            for argument in &self.arena[arguments] {
+                self.passed(*argument);
             }
-            ExprKind::Ref(inner) => self.assign(inner),
-            _ => {}
+        }
+        if let ExprKind::Ref(inner) = written {
+            self.assign(inner);
         }
     }
 

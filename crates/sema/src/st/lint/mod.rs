@@ -155,7 +155,21 @@ fn root(arena: &st::Arena, mut path: st::Id<st::Expr>) -> Option<iecc_ast::Symbo
             ExprKind::Member { base, .. }
             | ExprKind::Part { base, .. }
             | ExprKind::Index { base, .. } => path = base,
-            _ => return None,
+            ExprKind::Literal(_)
+            | ExprKind::Typed { .. }
+            | ExprKind::Deref(_)
+            | ExprKind::Direct(_)
+            | ExprKind::This
+            | ExprKind::Super
+            | ExprKind::Null
+            | ExprKind::Ref(_)
+            | ExprKind::Call { .. }
+            | ExprKind::Unary { .. }
+            | ExprKind::Binary { .. }
+            | ExprKind::ArrayValue(_)
+            | ExprKind::Repeat { .. }
+            | ExprKind::StructValue(_)
+            | ExprKind::Error => return None,
         }
     }
 }

@@ -29,10 +29,13 @@ impl Analysis<'_> {
                 let arena = &unit.unit.arena;
                 names.extend(arena.all::<st::Ident>().iter().map(|ident| ident.name));
                 for expr in arena.all::<st::Expr>() {
-                    match expr.kind {
-                        ExprKind::Name(name) => drop(names.insert(name)),
-                        ExprKind::Member { member, .. } => drop(names.insert(member.name)),
-                        _ => {}
+                    if let ExprKind::Name(name)
+                    | ExprKind::Member {
+                        member: st::Ident { name, .. },
+                        ..
+                    } = expr.kind
+                    {
+                        names.insert(name);
                     }
                 }
             }
@@ -221,7 +224,21 @@ fn uses(arena: &st::Arena) -> Uses {
                     uses.whole.insert(name);
                 }
             }
-            _ => {}
+            ExprKind::Literal(_)
+            | ExprKind::Typed { .. }
+            | ExprKind::Part { .. }
+            | ExprKind::Deref(_)
+            | ExprKind::Direct(_)
+            | ExprKind::This
+            | ExprKind::Super
+            | ExprKind::Null
+            | ExprKind::Ref(_)
+            | ExprKind::Unary { .. }
+            | ExprKind::Binary { .. }
+            | ExprKind::ArrayValue(_)
+            | ExprKind::Repeat { .. }
+            | ExprKind::StructValue(_)
+            | ExprKind::Error => {}
         }
     }
     uses

@@ -33,7 +33,19 @@ impl Body<'_, '_> {
         match self.code.expr(value).kind {
             ExprKind::Binary(..) => true,
             ExprKind::Unary(_, operand) => self.is_rounded(operand),
-            _ => false,
+            ExprKind::Const(_)
+            | ExprKind::Load(_)
+            | ExprKind::Compare(..)
+            | ExprKind::Convert(..)
+            | ExprKind::Select(..)
+            | ExprKind::Choose(..)
+            | ExprKind::Within { .. }
+            | ExprKind::Call(_)
+            | ExprKind::After(..)
+            | ExprKind::Address(_)
+            | ExprKind::Now
+            | ExprKind::Elapsed(_)
+            | ExprKind::ElapsedUnits(_) => false,
         }
     }
 }

@@ -175,15 +175,13 @@ impl Analysis<'_> {
     fn note_mocks(&mut self, unit: UnitId) {
         let namespace = self.units[unit.index()].namespace;
         for stmt in self.unit(unit).arena.all::<Stmt>() {
-            match stmt.kind {
-                StmtKind::Mock(_) => self.testing.mocks = true,
-                StmtKind::MockFunction { function, .. } => {
-                    if let Some([Def::Pou(found), ..]) = self.path(unit, namespace, function) {
-                        let found = *found;
-                        self.testing.functions.entry(found).or_default();
-                    }
-                }
-                _ => {}
+            if let StmtKind::Mock(_) = stmt.kind {
+                self.testing.mocks = true;
+            }
+            if let StmtKind::MockFunction { function, .. } = stmt.kind
+                && let Some(&[Def::Pou(found), ..]) = self.path(unit, namespace, function)
+            {
+                self.testing.functions.entry(found).or_default();
             }
         }
     }
