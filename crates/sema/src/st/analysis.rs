@@ -73,7 +73,7 @@ pub(crate) struct Analysis<'a> {
     pub pous: Vec<Pou>,
     pub globals: Vec<Global>,
     /// The hidden names of the accessors of properties.
-    pub accessors: FxHashMap<Symbol, super::hidden::Accessors>,
+    pub accessors: FxHashMap<Symbol, super::declare::Accessors>,
     /// Variables of VAR_STAT, by where they are declared.
     pub statics: FxHashMap<(UnitId, iecc_source::TextRange), GlobalId>,
     /// Lists of global variables and their names.
@@ -100,11 +100,11 @@ pub(crate) struct Analysis<'a> {
     /// Units whose bodies name ENO.
     pub eno_units: std::cell::RefCell<FxHashMap<UnitId, bool>>,
     /// Who extends and implements whom.
-    pub families: super::heritage::Families,
+    pub families: super::objects::Families,
     /// Bodies of a base made for what extends it.
     pub receivers: FxHashMap<(PouId, PouId), PouId>,
     /// Units that choose a body by the type of an instance.
-    pub dispatchers: FxHashMap<(PouId, Option<Symbol>), super::dispatch::Dispatcher>,
+    pub dispatchers: FxHashMap<(PouId, Option<Symbol>), super::objects::Dispatcher>,
     /// Bodies that no source has.
     pub synthetics: Vec<(hir::PouId, hir::Pou)>,
     /// How many bodies have a name.

@@ -15,50 +15,30 @@
 )]
 
 mod address;
-mod address_part;
 mod analysis;
 mod bodies;
 mod body;
 mod config;
 pub mod constant;
 mod declare;
-mod dialect;
-mod dispatch;
 pub mod elementary;
-mod evaluate;
-mod extended;
-mod globals;
-mod heritage;
-mod hidden;
-mod inheritance;
-mod init_leaves;
 mod initial;
-mod instance;
-mod kept;
-mod linked;
 mod lint;
-mod lists;
-mod namespaces;
-mod overlay;
-mod paths;
-mod pragmas;
+mod objects;
 mod program;
 mod recheck;
 mod resolve;
 pub mod signature;
 mod signatures;
-mod size;
-mod spelling;
 mod storage;
-mod suitable;
 pub mod testing;
 pub mod types;
 mod uncalled;
 
 pub use constant::Const;
+pub use declare::intern_hidden;
 pub use elementary::{El, Family};
-pub use evaluate::Evaluator;
-pub use hidden::intern_hidden;
+pub use initial::Evaluator;
 pub use recheck::Kept;
 
 use crate::hir;
@@ -255,7 +235,7 @@ impl<'a> Analysis<'a> {
             tag_names: rustc_hash::FxHashSet::default(),
             instances: FxHashMap::default(),
             wanted: Vec::new(),
-            families: heritage::Families::default(),
+            families: objects::Families::default(),
             receivers: FxHashMap::default(),
             dispatchers: FxHashMap::default(),
             eno_units: std::cell::RefCell::default(),

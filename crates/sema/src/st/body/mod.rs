@@ -4,41 +4,23 @@
 //! literals take that type. After a message a piece counts as of the error type, which goes with
 //! everything, so one mistake gives one message.
 
-mod arguments;
 mod assertion;
-mod bits_as_numbers;
-mod block_call;
-mod builtin;
 mod call;
 mod coerce;
-mod compare;
 mod connect;
-mod convert;
 mod edge;
-mod element;
 mod expr;
-mod fold;
-mod function;
-mod generic;
 mod initial_reference;
-mod intrinsic;
 mod library;
-mod library_units;
 mod literal;
-mod mock;
 mod object;
 mod operand;
 mod operator;
-mod part;
 mod place;
-mod pointer;
 mod program;
 mod property;
-mod reference;
 mod stmt;
 mod suite;
-mod time;
-mod untyped;
 
 pub(crate) use connect::Connections;
 pub(crate) use operand::{Operand, OperandKind, Place, Rights};

@@ -4,7 +4,7 @@
 
 use super::call::Callee;
 use super::{Body, Operand, OperandKind, Rights};
-use crate::st::hidden::Property;
+use crate::st::declare::Property;
 use crate::st::signature::PouId;
 use crate::st::types::TypeId;
 use iecc_ast::Symbol;

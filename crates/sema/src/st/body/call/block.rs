@@ -1,0 +1,181 @@
+//! Calls of blocks: inputs are stored in the instance, the body runs, outputs are fetched.
+
+use crate::hir::code::{Call, ExprKind, PathId, PathStep, StmtKind};
+use crate::st::body::object::{Run, Target};
+use crate::st::body::{Body, Operand, OperandKind, Place, Rights};
+use crate::st::constant::Const;
+use crate::st::signature::{PouId, Storage, Var};
+use crate::st::types::TypeId;
+use iecc_ast::st::{self, Argument, ArgumentKind, SectionKind};
+use iecc_source::TextRange;
+
+impl Body<'_, '_> {
+    /// `instance(input := …, output => …)`.
+    pub(crate) fn block_call(
+        &mut self,
+        pou: PouId,
+        place: &Place,
+        arguments: st::List<Argument>,
+        range: TextRange,
+    ) {
+        self.an.complete(pou);
+        let Some(pou) = self.open_instance(pou, arguments, range) else {
+            return;
+        };
+        let matched = self.matched(pou, arguments, range);
+        let mut refs: Vec<Option<PathId>> = Vec::new();
+        let shape = self.an.call_shape(pou);
+        refs.resize(shape.refs.len(), None);
+        for (var, argument) in &matched {
+            let Some(value) = argument.value else {
+                continue;
+            };
+            match var.section {
+                SectionKind::Input => self.block_input(pou, place, var, value),
+                SectionKind::InOut => {
+                    let path = self.in_out(var, value);
+                    if let (Storage::Ref(position), Some(path)) = (&var.storage, path) {
+                        refs[*position as usize - 1] = Some(path);
+                    }
+                }
+                SectionKind::Var
+                | SectionKind::Output
+                | SectionKind::Temp
+                | SectionKind::External
+                | SectionKind::Global
+                | SectionKind::Access
+                | SectionKind::Config
+                | SectionKind::Static
+                | SectionKind::Instance => {}
+            }
+        }
+        self.require_in_outs(pou, &matched, range);
+        let run = self.run(pou, place, None, pou, range);
+        let given: Option<Vec<PathId>> = refs.into_iter().collect();
+        let eno = self.eno_target(arguments);
+        let mut changes_eno = false;
+        let eno_place = eno.map(|_| self.temporary("ENO", TypeId::BOOL));
+        if let Some(given) = given {
+            let target = Target {
+                signature: pou,
+                run,
+            };
+            changes_eno = self.shape_of(&target).eno;
+            let callee = self.run_unit(&target);
+            let (mut refs, mut args) = (Vec::new(), Vec::new());
+            match &target.run {
+                Run::Function => {}
+                Run::On { instance, .. } => refs.push(self.path_of(instance, range)),
+                Run::Choose { address, .. } => args.push(*address),
+            }
+            refs.extend(given);
+            let mut outputs = Vec::new();
+            if let (true, Some(eno)) = (changes_eno, &eno_place) {
+                outputs.push((0, self.path_of(eno, range)));
+            }
+            let call = self.add_call(Call {
+                callee,
+                refs,
+                args,
+                outputs,
+            });
+            let value = self.add_expr(ExprKind::Call(call), crate::hir::Elementary::Bool, range);
+            let call = self.add_stmt(StmtKind::Eval(value), range);
+            let eno = eno_place.as_ref().filter(|_| changes_eno);
+            let call = self.unless_mocked(pou, place, call, eno, range);
+            self.pending.push(call);
+        }
+        for (var, argument) in &matched {
+            if var.section == SectionKind::Output {
+                self.block_output(pou, place, var, argument);
+            }
+        }
+        if let (Some(eno), Some(place)) = (eno, eno_place) {
+            self.eno_to(changes_eno, place, &eno);
+        }
+    }
+
+    /// Stores the ENO of a call; it is TRUE where the body does not change it.
+    pub(crate) fn eno_to(&mut self, changes: bool, place: Place, argument: &Argument) {
+        let value = if changes {
+            Operand {
+                kind: OperandKind::Place(place),
+                ty: TypeId::BOOL,
+                range: argument.range,
+            }
+        } else {
+            Operand::constant(Const::Int(1), TypeId::BOOL, argument.range)
+        };
+        if let Some(target) = argument.value {
+            self.output_to(value, target, argument);
+        }
+    }
+
+    fn block_input(&mut self, pou: PouId, place: &Place, var: &Var, value: st::Id<st::Expr>) {
+        let operand = self.expr(value, Some(var.ty));
+        let Some(steps) = self.field_steps(pou, place, var) else {
+            return;
+        };
+        let target = Place {
+            root: place.root,
+            steps,
+            rights: Rights::All,
+        };
+        self.store(&target, var.ty, &operand, operand.range);
+    }
+
+    /// The steps to a variable of an instance or of what it extends.
+    fn field_steps(&self, pou: PouId, place: &Place, var: &Var) -> Option<Vec<PathStep>> {
+        let Storage::Field(field) = var.storage else {
+            return None;
+        };
+        let (of, _) = self.an.instance_var(pou, var.name)?;
+        let mut steps = place.steps.clone();
+        let distance = self.an.base_distance(pou, of).unwrap_or(0);
+        steps.extend(std::iter::repeat_n(PathStep::Field(0), distance));
+        steps.push(PathStep::Field(field));
+        Some(steps)
+    }
+
+    fn block_output(&mut self, pou: PouId, place: &Place, var: &Var, argument: &Argument) {
+        let Some(target) = argument.value else { return };
+        let Some(steps) = self.field_steps(pou, place, var) else {
+            return;
+        };
+        let from = Operand {
+            kind: OperandKind::Place(Place {
+                root: place.root,
+                steps,
+                rights: Rights::OtherOutput,
+            }),
+            ty: var.ty,
+            range: argument.range,
+        };
+        self.output_to(from, target, argument);
+    }
+
+    /// Stores an output where `=>` points.
+    pub(crate) fn output_to(
+        &mut self,
+        from: Operand,
+        target: st::Id<st::Expr>,
+        argument: &Argument,
+    ) {
+        let target = self.place(target, None);
+        let Some(to) = self.writable(&target) else {
+            return;
+        };
+        let from = if matches!(argument.kind, ArgumentKind::NegatedOutput(_)) {
+            self.unary_on(st::UnaryOp::Not, from, argument.range, None)
+        } else {
+            from
+        };
+        self.store(&to, target.ty, &from, argument.range);
+    }
+
+    /// The place an in-out stands for.
+    pub(crate) fn in_out(&mut self, var: &Var, value: st::Id<st::Expr>) -> Option<PathId> {
+        let operand = self.place(value, None);
+        self.reference_argument(var, &operand)
+    }
+}

@@ -1,0 +1,265 @@
+//! Paths from outside of units: `resource.program.block.variable`, of VAR_ACCESS, VAR_CONFIG, tasks.
+
+use crate::hir::code::PathStep;
+use crate::hir::{Place, Step};
+use crate::st::address::Address;
+use crate::st::analysis::Analysis;
+use crate::st::signature::{Def, PouId, Spot, Storage, UnitId};
+use crate::st::types::{TypeId, TypeKind};
+use iecc_ast::Symbol;
+use iecc_ast::st::{self, ExprKind};
+use iecc_diag::Code;
+
+/// What a path leads to.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    pub place: Place,
+    pub ty: TypeId,
+    /// Whether VAR_CONFIG gives its address.
+    pub partly: bool,
+}
+
+/// One part of a written path.
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    Name(st::Ident),
+    Index(st::List<st::Id<st::Expr>>),
+}
+
+impl Analysis<'_> {
+    /// Follows a path; a message where it leads nowhere.
+    pub(crate) fn outside_path(&mut self, unit: UnitId, id: st::Id<st::Expr>) -> Option<Found> {
+        let range = self.unit(unit).arena[id].range;
+        if let ExprKind::Direct(_) = self.unit(unit).arena[id].kind {
+            let address = self.address(unit, id)?;
+            let ty = address.plain_type();
+            let found = self.found_at(address, ty);
+            if found.is_none() {
+                self.unsupported(unit, range, "this address here");
+            }
+            return found;
+        }
+        let mut parts = Vec::new();
+        let found = self
+            .written_parts(unit, id, &mut parts)
+            .and_then(|()| self.follow_parts(unit, &parts));
+        if found.is_none() {
+            let span = self.span(unit, range);
+            let message = "this path leads to no variable of the configuration";
+            self.error(Code::E1012, span, message);
+        }
+        found.filter(|found| found.ty != TypeId::ERROR)
+    }
+
+    fn found_at(&mut self, address: Address, ty: TypeId) -> Option<Found> {
+        let spot = self.spot(address, ty)?;
+        Some(Found {
+            place: place_of(&spot)?,
+            ty,
+            partly: false,
+        })
+    }
+
+    /// Recursion is bounded by the depth of expressions.
+    fn written_parts(
+        &self,
+        unit: UnitId,
+        id: st::Id<st::Expr>,
+        parts: &mut Vec<Part>,
+    ) -> Option<()> {
+        let arena = &self.unit(unit).arena;
+        let written = arena[id];
+        match written.kind {
+            ExprKind::Name(name) => parts.push(Part::Name(st::Ident {
+                name,
+                range: written.range,
+            })),
+            ExprKind::Member { base, member } => {
+                self.written_parts(unit, base, parts)?;
+                parts.push(Part::Name(member));
+            }
+            ExprKind::Index { base, indices } => {
+                self.written_parts(unit, base, parts)?;
+                parts.push(Part::Index(indices));
+            }
+            ExprKind::Literal(_)
+            | ExprKind::Typed { .. }
+            | ExprKind::Part { .. }
+            | ExprKind::Deref(_)
+            | ExprKind::Direct(_)
+            | ExprKind::This
+            | ExprKind::Super
+            | ExprKind::Null
+            | ExprKind::Ref(_)
+            | ExprKind::Call { .. }
+            | ExprKind::Unary { .. }
+            | ExprKind::Binary { .. }
+            | ExprKind::ArrayValue(_)
+            | ExprKind::Repeat { .. }
+            | ExprKind::StructValue(_)
+            | ExprKind::Error => return None,
+        }
+        Some(())
+    }
+
+    fn follow_parts(&mut self, unit: UnitId, parts: &[Part]) -> Option<Found> {
+        let Some((Part::Name(head), rest)) = parts.split_first() else {
+            return None;
+        };
+        if let Some(found) = self.path_head(unit, head.name) {
+            return self.follow_rest(unit, found, rest);
+        }
+        // The configuration and the resource may stand in front.
+        let outer = self.outer_names(unit).contains(&head.name);
+        if outer && !rest.is_empty() {
+            return self.follow_parts(unit, rest);
+        }
+        None
+    }
+
+    /// The names of a configuration and of its resources.
+    pub(crate) fn outer_names(&self, unit: UnitId) -> Vec<Symbol> {
+        let unit = self.unit(unit);
+        let st::UnitKind::Configuration(configuration) = &unit.kind else {
+            return Vec::new();
+        };
+        let resources = unit.arena[configuration.resources].iter();
+        let resources = resources.filter_map(|resource| resource.name);
+        resources
+            .chain([configuration.name])
+            .map(|ident| ident.name)
+            .collect()
+    }
+
+    fn path_head(&mut self, unit: UnitId, name: Symbol) -> Option<Found> {
+        let instance = self.program_instances.iter().find(|one| one.0 == name);
+        if let Some(&(_, program, tag)) = instance {
+            return Some(Found {
+                place: Place::whole(tag),
+                ty: self.types.intern(TypeKind::Instance(program)),
+                partly: false,
+            });
+        }
+        let namespace = self.units[unit.index()].namespace;
+        let [Def::Global(global)] = *self.lookup(namespace, name) else {
+            return None;
+        };
+        let global = self.global(global);
+        let (ty, spot) = (global.ty, global.spot.clone()?);
+        Some(Found {
+            place: place_of(&spot)?,
+            ty,
+            partly: false,
+        })
+    }
+
+    fn follow_rest(&mut self, unit: UnitId, mut at: Found, rest: &[Part]) -> Option<Found> {
+        for part in rest {
+            at = match *part {
+                Part::Name(name) => self.path_member(at, name.name)?,
+                Part::Index(indices) => self.path_element(unit, at, indices)?,
+            };
+        }
+        Some(at)
+    }
+
+    /// The member or variable of something.
+    pub(crate) fn path_member(&mut self, at: Found, name: Symbol) -> Option<Found> {
+        match self.types.base(at.ty).clone() {
+            TypeKind::Struct(index) => {
+                let def = &self.types.structs[index as usize];
+                let position = *def.by_name.get(&name)?;
+                if def.overlay.is_some() {
+                    return None;
+                }
+                let member = &def.members[position as usize];
+                Some(Found {
+                    place: at.place.step(Step::Field(position)),
+                    ty: member.ty,
+                    partly: member.partly.is_some(),
+                })
+            }
+            TypeKind::Instance(pou) => self.path_variable(at.place, pou, name),
+            TypeKind::Error
+            | TypeKind::Nothing
+            | TypeKind::UntypedInt
+            | TypeKind::UntypedReal
+            | TypeKind::Null
+            | TypeKind::Elementary(_)
+            | TypeKind::Text { .. }
+            | TypeKind::Enum(_)
+            | TypeKind::Subrange { .. }
+            | TypeKind::Array { .. }
+            | TypeKind::OpenArray { .. }
+            | TypeKind::Interface(_)
+            | TypeKind::Reference(..)
+            | TypeKind::Alias(_) => None,
+        }
+    }
+
+    fn path_variable(&mut self, mut place: Place, mut pou: PouId, name: Symbol) -> Option<Found> {
+        loop {
+            if let Some(var) = self.pou(pou).var(name).cloned() {
+                return match var.storage {
+                    Storage::Field(field) => Some(Found {
+                        place: place.step(Step::Field(field)),
+                        ty: var.ty,
+                        partly: var.partly.is_some(),
+                    }),
+                    Storage::Located(address) => self.found_at(address, var.ty),
+                    Storage::Global(_) | Storage::Const(_) | Storage::Local | Storage::Ref(_) => {
+                        None
+                    }
+                };
+            }
+            pou = *self.pou(pou).extends.first()?;
+            place = place.step(Step::Field(0));
+        }
+    }
+
+    fn path_element(
+        &mut self,
+        unit: UnitId,
+        mut at: Found,
+        indices: st::List<st::Id<st::Expr>>,
+    ) -> Option<Found> {
+        let TypeKind::Array {
+            dimensions,
+            element,
+        } = self.types.base(at.ty).clone()
+        else {
+            return None;
+        };
+        let written = self.unit(unit).arena[indices].to_vec();
+        if written.len() != dimensions.len() {
+            return None;
+        }
+        let scope = self.global_scope(unit);
+        for (&(low, high), index) in dimensions.iter().zip(written) {
+            let index = self.constant_int(scope, index, TypeId::UNTYPED_INT)?;
+            let index = i64::try_from(index).ok()?;
+            if !(low..=high).contains(&index) {
+                return None;
+            }
+            at.place = at.place.step(Step::Index((index - low) as u32));
+        }
+        Some(Found { ty: element, ..at })
+    }
+}
+
+/// A spot as a place, unless it is a value of several bytes.
+pub(crate) fn place_of(spot: &Spot) -> Option<Place> {
+    let steps = spot.steps.iter().map(|step| match *step {
+        PathStep::Field(field) => Some(Step::Field(field)),
+        PathStep::Index(index) => Some(Step::Index(index)),
+        PathStep::Bits { first, count: 1 } => Some(Step::Bit(first)),
+        PathStep::Bits { .. }
+        | PathStep::IndexBy { .. }
+        | PathStep::Character { .. }
+        | PathStep::Bytes { .. } => None,
+    });
+    Some(Place {
+        tag: spot.tag,
+        path: steps.collect::<Option<_>>()?,
+    })
+}

@@ -1,0 +1,558 @@
+//! Resolves signatures: the variables of a unit, where they live, and how it is called.
+
+mod globals;
+mod lasting;
+
+use super::analysis::{Analysis, MAX_RESOLUTION_DEPTH};
+use super::resolve::TypeScope;
+use super::signature::{Initial, Part, PouId, State, Storage, Var};
+use super::types::{TypeId, TypeKind};
+use iecc_ast::st::{self, Declarations, Member, ModifierKind, PouKind, SectionKind, UnitKind};
+use iecc_diag::Code;
+
+/// How a unit is called. Positions are those of its variables.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct CallShape {
+    /// Whether the first reference is the instance.
+    pub instance: bool,
+    /// Passed by reference, in order; then the result, if it is no number.
+    pub refs: Vec<usize>,
+    /// Whether the result is the last reference.
+    pub result_by_ref: bool,
+    /// Passed by value.
+    pub params: Vec<usize>,
+    /// Given back: the result first, if it is a number.
+    pub results: Vec<usize>,
+    /// Whether the first result is that of the function.
+    pub result_by_value: bool,
+    /// Whether ENO is the last result.
+    pub eno: bool,
+}
+
+/// The interface of a unit as it is written.
+#[derive(Clone, Copy)]
+struct WrittenPou {
+    sections: st::List<st::VarSection>,
+    result: Option<st::Id<st::TypeSpec>>,
+    kind: PouKind,
+}
+
+impl Analysis<'_> {
+    /// Completes the signature of a unit. An instance that contains itself is reported where it is
+    /// declared.
+    pub(crate) fn complete(&mut self, id: PouId) {
+        if self.pou(id).state != State::Declared {
+            return;
+        }
+        self.pous[id.index()].state = State::InProgress;
+        if let Some(owner) = self.pou(id).owner {
+            self.complete(owner);
+        }
+        if let Some(base) = self
+            .base_of(id)
+            .filter(|_| self.pou(id).part == Part::Whole)
+        {
+            self.complete(base);
+            self.inherit_in_outs(id, base);
+        }
+        self.value_of_setter(id);
+        if let Some(written) = self.written_pou(id) {
+            let scope = self.pou_scope(id);
+            let scope = scope.as_scope();
+            let result = written.result.map(|ty| self.type_of_spec(scope, ty));
+            self.pous[id.index()].result = result;
+            let sections = &self.unit(scope.unit).arena[written.sections];
+            for section in sections {
+                self.section(id, written.kind, section);
+            }
+        }
+        if self.pou(id).has_instances() {
+            self.keep_for_methods(id);
+        }
+        self.place_vars(id);
+        self.pous[id.index()].state = State::Done;
+    }
+
+    /// Where the types of a unit are looked up.
+    pub(crate) fn pou_scope(&self, id: PouId) -> OwnedScope {
+        let pou = self.pou(id);
+        OwnedScope {
+            unit: pou.unit,
+            namespace: pou.namespace,
+            bindings: pou.bindings.clone(),
+            pou: id,
+        }
+    }
+
+    fn written_pou(&self, id: PouId) -> Option<WrittenPou> {
+        let pou = self.pou(id);
+        let unit = self.unit(pou.unit);
+        let whole = match &unit.kind {
+            UnitKind::Pou(whole) => whole,
+            UnitKind::Test(test) => {
+                return Some(WrittenPou {
+                    sections: test.sections,
+                    result: None,
+                    kind: pou.kind,
+                });
+            }
+            UnitKind::Types { .. }
+            | UnitKind::Configuration(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => return None,
+        };
+        let member = |index: u32| &unit.arena[whole.members][index as usize];
+        let function = PouKind::Function;
+        match pou.part {
+            Part::Whole => Some(WrittenPou {
+                sections: whole.sections,
+                result: whole.result,
+                kind: whole.kind,
+            }),
+            Part::Member(index) => match member(index) {
+                Member::Method(method) => Some(WrittenPou {
+                    sections: method.sections,
+                    result: method.result,
+                    kind: function,
+                }),
+                Member::Action(_) | Member::Property(_) => None,
+            },
+            Part::Getter(index) | Part::Setter(index) => match member(index) {
+                Member::Property(property) => {
+                    let (accessor, result) = match pou.part {
+                        Part::Getter(_) => (property.get, Some(property.ty)),
+                        Part::Whole | Part::Member(_) | Part::Setter(_) => (property.set, None),
+                    };
+                    accessor.map(|accessor| WrittenPou {
+                        sections: accessor.sections,
+                        result,
+                        kind: function,
+                    })
+                }
+                Member::Method(_) | Member::Action(_) => None,
+            },
+        }
+    }
+
+    fn section(&mut self, id: PouId, kind: PouKind, section: &st::VarSection) {
+        let unit_id = self.pou(id).unit;
+        let unit = self.unit(unit_id);
+        let modifiers = &unit.arena[section.modifiers];
+        let constant = modifiers.iter().any(|m| m.kind == ModifierKind::Constant);
+        let access = modifiers.iter().map(|m| m.kind).find(|kind| {
+            matches!(
+                kind,
+                ModifierKind::Public
+                    | ModifierKind::Protected
+                    | ModifierKind::Private
+                    | ModifierKind::Internal
+            )
+        });
+        self.allowed_section(id, kind, section);
+        let Declarations::Variables(variables) = section.declarations else {
+            return;
+        };
+        self.modifiers_go_together(unit_id, Some(kind), section);
+        // Their types are those of what keeps them.
+        if matches!(section.kind, SectionKind::Static | SectionKind::Instance) {
+            self.kept_section(id, variables, section.kind, constant);
+            return;
+        }
+        for decl in &unit.arena[variables] {
+            let owned = self.pou_scope(id);
+            let names = &unit.arena[decl.names];
+            // Each name has the type of its own argument.
+            let bound = |ident: &st::Ident| owned.open_type(ident.name);
+            let mut declared = match names.iter().all(|ident| bound(ident).is_some()) {
+                true => TypeId::ERROR,
+                false => self.variable_type(owned.as_scope(), decl),
+            };
+            if decl.edge.is_some() && !self.edge_fits(unit_id, kind, section.kind, decl, declared) {
+                declared = TypeId::ERROR;
+            }
+            for ident in names {
+                let ty = bound(ident).unwrap_or(declared);
+                let initial = decl.initial.map(|expr| Initial {
+                    unit: unit_id,
+                    expr,
+                });
+                let mut var = Var {
+                    name: ident.name,
+                    range: ident.range,
+                    section: section.kind,
+                    ty,
+                    initial,
+                    constant,
+                    edge: decl.edge,
+                    access,
+                    storage: Storage::Local,
+                    partly: None,
+                };
+                if let Some(location) = decl.location
+                    && section.kind != SectionKind::Global
+                {
+                    self.located(id, kind, &mut var, location);
+                }
+                var.ty = self.check_instance(id, section.kind, &var);
+                if section.kind == SectionKind::Global {
+                    self.own_global(id, &mut var);
+                } else if section.kind == SectionKind::External {
+                    self.external(id, &mut var);
+                } else if constant && !is_passed(section.kind) {
+                    self.fold_constant(id, &mut var);
+                }
+                self.check_place_of_instance(id, &var);
+                self.add_var(id, var);
+            }
+        }
+    }
+
+    /// Variables of VAR_STAT and VAR_INST.
+    fn kept_section(
+        &mut self,
+        id: PouId,
+        variables: st::List<st::VarDecl>,
+        section: SectionKind,
+        constant: bool,
+    ) {
+        let unit = self.pou(id).unit;
+        let arena = &self.unit(unit).arena;
+        for ident in arena[variables].iter().flat_map(|decl| &arena[decl.names]) {
+            let mut var = Var {
+                name: ident.name,
+                range: ident.range,
+                section,
+                ty: TypeId::ERROR,
+                initial: None,
+                constant,
+                edge: None,
+                access: None,
+                storage: Storage::Local,
+                partly: None,
+            };
+            if section == SectionKind::Static {
+                self.own_static(unit, &mut var);
+            } else {
+                self.own_kept(id, &mut var);
+            }
+            self.add_var(id, var);
+        }
+    }
+
+    /// Whether an input may have R_EDGE or F_EDGE.
+    fn edge_fits(
+        &mut self,
+        unit: super::signature::UnitId,
+        kind: PouKind,
+        section: SectionKind,
+        decl: &st::VarDecl,
+        ty: TypeId,
+    ) -> bool {
+        if ty == TypeId::ERROR {
+            return true;
+        }
+        let span = self.span(unit, decl.range);
+        let owner = matches!(kind, PouKind::FunctionBlock | PouKind::Program);
+        if section != SectionKind::Input || !owner {
+            let message = "R_EDGE and F_EDGE stand in VAR_INPUT of blocks and programs only";
+            self.error(Code::E1011, span, message);
+            return false;
+        }
+        if self.types.strip(ty) != TypeId::BOOL {
+            let message = format!("an edge is one of a BOOL, not of {}", self.type_name(ty));
+            self.error(Code::E2022, span, message);
+            return false;
+        }
+        true
+    }
+
+    fn allowed_section(&mut self, id: PouId, kind: PouKind, section: &st::VarSection) {
+        use SectionKind as S;
+        let (unit, in_method) = (self.pou(id).unit, self.pou(id).owner.is_some());
+        let allowed = match (kind, section.kind) {
+            (PouKind::Interface, _) => false,
+            (PouKind::Class, kind) => matches!(kind, S::Var | S::External),
+            (_, S::Var | S::Temp | S::Input | S::Output | S::InOut | S::External) => true,
+            (_, S::Static) => true,
+            (_, S::Instance) => in_method,
+            (PouKind::Program, S::Global | S::Access) => true,
+            (_, S::Global | S::Access | S::Config) => false,
+        };
+        let test = match &self.unit(unit).kind {
+            UnitKind::Test(test) => Some(test.kind.as_str()),
+            UnitKind::Types { .. }
+            | UnitKind::Pou(_)
+            | UnitKind::Configuration(_)
+            | UnitKind::Globals(_)
+            | UnitKind::Using(_)
+            | UnitKind::Nothing
+            | UnitKind::Error => None,
+        };
+        let passed = matches!(section.kind, S::Input | S::Output | S::InOut);
+        if !allowed || test.is_some() && passed {
+            let span = self.span(unit, section.range);
+            let message = format!(
+                "{} cannot stand in a {}",
+                section.kind.as_str(),
+                test.unwrap_or(kind.as_str())
+            );
+            self.error(Code::E1011, span, message);
+        }
+    }
+
+    fn variable_type(&mut self, scope: TypeScope<'_>, decl: &st::VarDecl) -> TypeId {
+        let unit = self.unit(scope.unit);
+        let ty = self.type_of_spec(scope, decl.ty);
+        self.complete_contained(ty, unit.span(unit.arena[decl.ty].range))
+    }
+
+    /// Completes the instances inside a type; gives the error type for a cycle.
+    pub(crate) fn complete_contained(&mut self, ty: TypeId, span: iecc_source::Span) -> TypeId {
+        let mut at = ty;
+        loop {
+            match self.types.base(at).clone() {
+                TypeKind::Array { element, .. } => at = element,
+                TypeKind::Instance(inner) => {
+                    let name = self.text(self.pou(inner).name);
+                    let mut lineage = self.lineage(inner).into_iter();
+                    if lineage.any(|id| self.pou(id).state == State::InProgress) {
+                        let message = format!("`{name}` contains itself");
+                        self.error(Code::E2009, span, message);
+                        return TypeId::ERROR;
+                    }
+                    if self.depth >= MAX_RESOLUTION_DEPTH {
+                        self.error(Code::E0013, span, "instances nest too deeply");
+                        return TypeId::ERROR;
+                    }
+                    self.depth += 1;
+                    self.complete(inner);
+                    self.depth -= 1;
+                    return ty;
+                }
+                TypeKind::Struct(index) => {
+                    let members: Vec<TypeId> = self.types.structs[index as usize]
+                        .members
+                        .iter()
+                        .map(|member| member.ty)
+                        .collect();
+                    for member in members {
+                        if self.types.is_scalar(member) {
+                            continue;
+                        }
+                        if self.complete_contained(member, span) == TypeId::ERROR {
+                            return TypeId::ERROR;
+                        }
+                    }
+                    return ty;
+                }
+                TypeKind::Error
+                | TypeKind::Nothing
+                | TypeKind::UntypedInt
+                | TypeKind::UntypedReal
+                | TypeKind::Null
+                | TypeKind::Elementary(_)
+                | TypeKind::Text { .. }
+                | TypeKind::Enum(_)
+                | TypeKind::Subrange { .. }
+                | TypeKind::OpenArray { .. }
+                | TypeKind::Interface(_)
+                | TypeKind::Reference(..)
+                | TypeKind::Alias(_) => return ty,
+            }
+        }
+    }
+
+    fn fold_constant(&mut self, id: PouId, var: &mut Var) {
+        if !self.types.is_scalar(var.ty) || var.ty == TypeId::ERROR {
+            return;
+        }
+        let owned = self.pou_scope(id);
+        let value = match var.initial {
+            Some(initial) => self.constant(owned.as_scope(), initial.expr, var.ty),
+            None => Some(self.default_const(var.ty)),
+        };
+        match value {
+            Some(value) => var.storage = Storage::Const(value),
+            None => var.ty = TypeId::ERROR,
+        }
+    }
+
+    fn add_var(&mut self, id: PouId, var: Var) {
+        let unit = self.pou(id).unit;
+        let span = self.span(unit, var.range);
+        if let Some(first) = self.pou(id).var(var.name) {
+            let first = self.span(unit, first.range);
+            self.declared_twice(var.name, span, first);
+            return;
+        }
+        let pou = &mut self.pous[id.index()];
+        pou.by_name.insert(var.name, pou.vars.len() as u32);
+        pou.vars.push(var);
+    }
+
+    /// In-outs of a base are passed with every call of what extends it.
+    fn inherit_in_outs(&mut self, id: PouId, base: PouId) {
+        let inherited: Vec<Var> = self
+            .pou(base)
+            .section(SectionKind::InOut)
+            .cloned()
+            .collect();
+        let UnitKind::Pou(written) = &self.unit(self.pou(id).unit).kind else {
+            return;
+        };
+        for mut var in inherited {
+            let open = &self.pou(id).bindings.open;
+            if let Some((_, ty)) = open.iter().find(|(name, _)| *name == var.name) {
+                var.ty = *ty;
+            }
+            var.range = written.name.range;
+            var.storage = Storage::Local;
+            self.add_var(id, var);
+        }
+    }
+
+    /// Inputs, outputs and in-outs of a unit and of what it extends, the base first.
+    pub(crate) fn all_parameters(&self, id: PouId) -> Vec<Var> {
+        let mut parameters: Vec<Var> = Vec::new();
+        for level in self.lineage(id).into_iter().rev() {
+            for var in &self.pou(level).vars {
+                let passed = matches!(
+                    var.section,
+                    SectionKind::Input | SectionKind::Output | SectionKind::InOut
+                );
+                if !passed {
+                    continue;
+                }
+                match parameters.iter_mut().find(|known| known.name == var.name) {
+                    // The same in-out, nearer to the unit.
+                    Some(known) => *known = var.clone(),
+                    None => parameters.push(var.clone()),
+                }
+            }
+        }
+        parameters
+    }
+
+    /// Says where each variable lives.
+    fn place_vars(&mut self, id: PouId) {
+        let instances = self.pou(id).has_instances();
+        let (mut field, mut reference) = (self.first_field(id), u32::from(instances));
+        if self.pou(id).owner.is_some() {
+            reference = 1;
+        }
+        for index in 0..self.pou(id).vars.len() {
+            let var = &self.pou(id).vars[index];
+            if var.storage != Storage::Local {
+                continue;
+            }
+            let scalar = self.types.is_scalar(var.ty);
+            let storage = match var.section {
+                SectionKind::InOut => Storage::Ref(0),
+                SectionKind::Input | SectionKind::Output if !instances && !scalar => {
+                    Storage::Ref(0)
+                }
+                SectionKind::Input | SectionKind::Output | SectionKind::Var if instances => {
+                    Storage::Field(field)
+                }
+                SectionKind::Var
+                | SectionKind::Input
+                | SectionKind::Output
+                | SectionKind::Temp
+                | SectionKind::External
+                | SectionKind::Global
+                | SectionKind::Access
+                | SectionKind::Config
+                | SectionKind::Static
+                | SectionKind::Instance => Storage::Local,
+            };
+            let edge = var.edge.is_some();
+            let storage = match storage {
+                Storage::Ref(_) => {
+                    reference += 1;
+                    Storage::Ref(reference - 1)
+                }
+                Storage::Field(_) => {
+                    field += 1 + u32::from(edge);
+                    Storage::Field(field - 1 - u32::from(edge))
+                }
+                other @ (Storage::Local
+                | Storage::Global(_)
+                | Storage::Const(_)
+                | Storage::Located(_)) => other,
+            };
+            self.pous[id.index()].vars[index].storage = storage;
+        }
+    }
+
+    /// How a unit is called; its signature must be complete.
+    pub(crate) fn call_shape(&self, id: PouId) -> CallShape {
+        let pou = self.pou(id);
+        let mut shape = CallShape {
+            instance: pou.has_instances() || pou.owner.is_some(),
+            ..CallShape::default()
+        };
+        for (index, var) in pou.vars.iter().enumerate() {
+            match (&var.storage, var.section) {
+                (Storage::Ref(_), _) => shape.refs.push(index),
+                (Storage::Local, SectionKind::Input) => shape.params.push(index),
+                (Storage::Local, SectionKind::Output) => shape.results.push(index),
+                _ => {}
+            }
+        }
+        if let Some(result) = pou.result {
+            let scalar = self.types.is_scalar(result);
+            (shape.result_by_value, shape.result_by_ref) = (scalar, !scalar);
+        }
+        shape.eno = self.uses_eno(id);
+        shape
+    }
+
+    /// Whether a body changes its ENO. All bodies of a unit count as one.
+    fn uses_eno(&self, id: PouId) -> bool {
+        let unit = self.pou(id).unit;
+        if let Some(known) = self.eno_units.borrow().get(&unit) {
+            return *known;
+        }
+        let arena = &self.unit(unit).arena;
+        let eno = st::ExprKind::Name(self.words.eno);
+        let uses = arena.all::<st::Expr>().iter().any(|expr| expr.kind == eno);
+        self.eno_units.borrow_mut().insert(unit, uses);
+        uses
+    }
+}
+
+/// Whether calls give or take the variables of a section.
+fn is_passed(section: SectionKind) -> bool {
+    matches!(
+        section,
+        SectionKind::Input | SectionKind::Output | SectionKind::InOut
+    )
+}
+
+/// A [`TypeScope`] that borrows nothing.
+#[derive(Debug, Clone)]
+pub(crate) struct OwnedScope {
+    unit: super::signature::UnitId,
+    namespace: super::signature::NamespaceId,
+    bindings: super::signature::Bindings,
+    pou: PouId,
+}
+
+impl OwnedScope {
+    /// The type of an open string or array, where a call has given it one.
+    fn open_type(&self, name: iecc_ast::Symbol) -> Option<TypeId> {
+        let mut open = self.bindings.open.iter();
+        open.find(|(known, _)| *known == name).map(|(_, ty)| *ty)
+    }
+
+    pub(crate) fn as_scope(&self) -> TypeScope<'_> {
+        TypeScope {
+            unit: self.unit,
+            namespace: self.namespace,
+            bindings: Some(&self.bindings),
+            pou: Some(self.pou),
+        }
+    }
+}
