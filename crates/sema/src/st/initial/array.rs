@@ -10,7 +10,7 @@ use crate::st::resolve::TypeScope;
 use crate::st::signature::{Def, Storage};
 use crate::st::storage::extent;
 use crate::st::types::TypeId;
-use iecc_ast::st::{self, ExprKind};
+use iecc_ast::st::{self, ArgumentKind, ExprKind};
 use iecc_diag::Code;
 use iecc_source::TextRange;
 
@@ -168,7 +168,15 @@ impl Analysis<'_> {
         if let ExprKind::Call { callee, arguments } = arena[value].kind
             && self.is_count(scope, callee)
         {
-            let values = arena[arguments].iter().filter_map(|a| a.value).collect();
+            let arguments = &arena[arguments];
+            let values = arguments.iter().filter_map(|a| a.value).collect();
+            if let Some(named) = arguments
+                .iter()
+                .find(|a| a.kind != ArgumentKind::Positional)
+            {
+                let span = self.span(scope.unit, named.range);
+                self.error(Code::E2008, span, "values that are repeated have no names");
+            }
             return Some(Repetition {
                 count: callee,
                 values,
