@@ -6,7 +6,6 @@ use super::call::Callee;
 use super::{Body, Operand, OperandKind, Rights};
 use crate::st::declare::Property;
 use crate::st::signature::PouId;
-use crate::st::types::TypeId;
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ExprKind as Written};
 use iecc_diag::Code as Message;
@@ -48,9 +47,8 @@ impl Body<'_, '_> {
         base: st::Id<st::Expr>,
         member: st::Ident,
         range: TextRange,
-        want: Option<TypeId>,
     ) -> Target {
-        if let Some(operand) = self.qualified(base, member, range, want) {
+        if let Some(operand) = self.qualified(base, member, range) {
             return Target::Place(operand);
         }
         let base = self.pointed_self(base);
@@ -107,7 +105,7 @@ impl Body<'_, '_> {
     /// What a path leads to that may end at a property; `None` if no property can be meant.
     fn target_with_properties(&mut self, written: st::Expr) -> Option<Target> {
         if let Written::Member { base, member } = written.kind {
-            return Some(self.member_target(base, member, written.range, None));
+            return Some(self.member_target(base, member, written.range));
         }
         let name = written
             .kind

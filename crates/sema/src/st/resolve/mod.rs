@@ -37,6 +37,17 @@ const MAX_TEXT: i128 = 1 << 20;
 pub(crate) const DEFAULT_TEXT: u32 = 80;
 
 impl Analysis<'_> {
+    /// Where names of a unit outside of bodies are looked up.
+    pub(crate) fn global_scope(&self, unit: UnitId) -> TypeScope<'static> {
+        let namespace = self.units.get(unit.index());
+        TypeScope {
+            unit,
+            namespace: namespace.map_or(NamespaceId::GLOBAL, |unit| unit.namespace),
+            bindings: None,
+            pou: self.pou_of_unit.get(&unit).copied(),
+        }
+    }
+
     /// The type that a declaration declares.
     pub(crate) fn declared_type(&mut self, id: TypeDeclId) -> TypeId {
         let declared = self.type_decl(id);
