@@ -54,6 +54,7 @@ impl<'p> Unit<'_, 'p> {
                 let place = self.memory(*path);
                 self.address_of(place)
             }
+            ExprKind::Exists(path) => self.exists(*path),
             ExprKind::Now => self.builder.now(),
             ExprKind::Elapsed(path) => {
                 let place = self.memory(*path);
@@ -89,6 +90,7 @@ impl<'p> Unit<'_, 'p> {
             | ExprKind::Choose(..)
             | ExprKind::Within { .. }
             | ExprKind::Address(_)
+            | ExprKind::Exists(_)
             | ExprKind::Now
             | ExprKind::Elapsed(_)
             | ExprKind::ElapsedUnits(_) => {

@@ -45,11 +45,12 @@ impl Unit<'_, '_> {
         self.builder.set_origin(back);
     }
 
-    /// Faults where an integer is 0, or sets the status.
-    pub(super) fn check_not_zero(&mut self, value: Value, fault: FaultCode, span: Span) {
+    /// Faults where an integer is 0, or sets the status. Gives what was tested.
+    pub(super) fn check_not_zero(&mut self, value: Value, fault: FaultCode, span: Span) -> Value {
         let zero = self.builder.constant(self.builder.value_type(value), 0);
         let sound = self.builder.compare(iecc_ir::CompareOp::Ne, value, zero);
         self.check(sound, fault, span);
+        sound
     }
 
     /// The value if it lies between two numbers of its type, else a fault or the nearer limit.

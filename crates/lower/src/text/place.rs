@@ -70,12 +70,32 @@ impl Unit<'_, '_> {
 
     /// Follows a path.
     pub(super) fn locate(&mut self, id: PathId) -> Located {
+        self.locate_tested(id, |_| ())
+    }
+
+    /// Follows a path. It leads somewhere if all tests hold that `tested` gets.
+    fn locate_tested(&mut self, id: PathId, mut tested: impl FnMut(Value)) -> Located {
         let path = self.code.path(id);
-        let mut at = self.start(path.root, path.span);
+        let (mut at, test) = self.start(path.root, path.span);
+        test.into_iter().for_each(&mut tested);
         for step in &path.steps {
-            self.step(&mut at, *step, path.span);
+            let test = self.step(&mut at, *step, path.span);
+            test.into_iter().for_each(&mut tested);
         }
         at
+    }
+
+    /// Whether a path leads anywhere. Where it does not, a fault has ended the scan or set the status.
+    pub(super) fn exists(&mut self, id: PathId) -> Value {
+        let mut tests = Vec::new();
+        self.locate_tested(id, |test| tests.push(test));
+        if self.traps() {
+            tests.clear();
+        }
+        let all = tests
+            .into_iter()
+            .reduce(|all, test| self.builder.binary(BinaryOp::And, all, test));
+        all.unwrap_or_else(|| self.builder.constant(Type::I1, 1))
     }
 
     /// The place in memory that a path leads to.
@@ -87,18 +107,19 @@ impl Unit<'_, '_> {
         }
     }
 
-    fn start(&mut self, root: Root, span: Span) -> Located {
+    fn start(&mut self, root: Root, span: Span) -> (Located, Option<Value>) {
+        let mut test = None;
         let (root, ty) = match root {
             Root::Tag(tag) => {
                 let place = Place::root(IrRoot::State).field(tag.index() as u32);
                 let ty = self.program.tag(tag).ty;
-                return Located::memory(place, ty);
+                return (Located::memory(place, ty), None);
             }
             Root::Ref(index) => (
                 IrRoot::Ref(RefParam::from_u32(index)),
                 self.code.refs[index as usize].ty,
             ),
-            Root::Local(local) => return self.local(local),
+            Root::Local(local) => return (self.local(local), None),
             Root::Deref {
                 address,
                 ty,
@@ -106,16 +127,18 @@ impl Unit<'_, '_> {
             } => {
                 let value = self.expr(address);
                 if !checked {
-                    self.check_not_zero(value, FaultCode::Reference, span);
+                    test = Some(self.check_not_zero(value, FaultCode::Reference, span));
                 }
                 let mem = self.lowering.types.mem_type(ty);
                 (IrRoot::Deref { value, ty: mem }, ty)
             }
         };
-        Located::memory(Place::root(root), ty)
+        (Located::memory(Place::root(root), ty), test)
     }
 
-    fn step(&mut self, at: &mut Located, step: PathStep, span: Span) {
+    /// Goes on along a path. Gives what was tested, if anything.
+    fn step(&mut self, at: &mut Located, step: PathStep, span: Span) -> Option<Value> {
+        let mut test = None;
         match step {
             PathStep::Field(field) => at.enter_field(self.program, field),
             PathStep::Index(index) => at.enter_element(self.program, Index::Const(index)),
@@ -129,7 +152,8 @@ impl Unit<'_, '_> {
                     low,
                     checked,
                 };
-                let index = self.index(subscript, at.elements(self.program), None, span);
+                let index;
+                (index, test) = self.index(subscript, at.elements(self.program), None, span);
                 at.enter_element(self.program, index);
             }
             PathStep::Character { value, checked } => {
@@ -141,7 +165,8 @@ impl Unit<'_, '_> {
                     low: 1,
                     checked,
                 };
-                let index = self.index(subscript, at.elements(self.program), length, span);
+                let index;
+                (index, test) = self.index(subscript, at.elements(self.program), length, span);
                 at.enter_element(self.program, index);
             }
             // A bit of a BOOL is the BOOL, and so on.
@@ -151,31 +176,33 @@ impl Unit<'_, '_> {
             PathStep::Bits { first, count } => at.part = Part::Bits { first, count },
             PathStep::Bytes { offset, ty } => at.part = Part::Bytes { offset, ty },
         }
+        test
     }
 
     /// Evaluates a subscript of an array of `len` elements and tests it, against what lies at `length`
     /// instead where that is given. Where a subscript outside does not fault, the index is outside as well.
+    /// Gives the test with the index, if there was one.
     fn index(
         &mut self,
         subscript: Subscript,
         len: u32,
         length: Option<Place>,
         span: Span,
-    ) -> Index {
+    ) -> (Index, Option<Value>) {
         let inside = self.integer(subscript.value).map(|number| {
             let offset = number - i128::from(subscript.low);
             u32::try_from(offset).ok().filter(|offset| *offset < len)
         });
         // A known subscript of a string is still to be tested against the length.
         if let (Some(Some(offset)), true) = (inside, length.is_none()) {
-            return Index::Const(offset);
+            return (Index::Const(offset), None);
         }
         let ty = self.code.expr(subscript.value).ty;
         let value = self.expr(subscript.value);
         let wide = needs_64_bits(ty, subscript.low, len);
         let (offset, sound) = self.offset(value, ty, subscript.low, wide);
         if subscript.checked && !wide {
-            return Index::Value(offset);
+            return (Index::Value(offset), None);
         }
         // What could be cut to an index inside, or is one and yet not meant, must not be used.
         let total = subscript.checked || !self.traps();
@@ -185,7 +212,8 @@ impl Unit<'_, '_> {
         if !subscript.checked {
             self.check(inside, FaultCode::Index, span);
         }
-        Index::Value(self.narrow(offset, inside, guard))
+        let test = (!subscript.checked).then_some(inside);
+        (Index::Value(self.narrow(offset, inside, guard)), test)
     }
 
     /// A subscript less the lower bound, in 32 or 64 bits; and what must hold besides, if anything.

@@ -133,6 +133,9 @@ pub enum ExprKind {
     After(Block, ExprId),
     /// The address of a place of the state, 0 for none; a `ULINT`.
     Address(PathId),
+    /// Whether there is anything at a place, a `BOOL`: a subscript outside and NULL on the way are
+    /// faults, or where faults do not stop give FALSE.
+    Exists(PathId),
     /// The time of the scan, in nanoseconds; a `LINT`.
     Now,
     /// Nanoseconds since the `LINT` at the place was renewed, and renews it; a `LINT`.

@@ -1,6 +1,7 @@
 //! Objects: whose members are seen, which body runs, what references to them may become.
 
 use super::call::Callee;
+use super::call::Presence;
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{Call, ExprId, ExprKind, PathStep, Root, StmtKind};
 use crate::hir::{self, Elementary, Type};
@@ -17,6 +18,8 @@ pub(crate) struct Target {
     /// Whose parameters count.
     pub signature: PouId,
     pub run: Run,
+    /// What has to hold for the instance to be there.
+    pub presence: Presence,
 }
 
 /// Which body runs, and on what.
@@ -74,6 +77,7 @@ pub(super) fn function_target(function: PouId) -> Target {
     Target {
         signature: function,
         run: Run::Function,
+        presence: Presence::default(),
     }
 }
 
@@ -282,7 +286,11 @@ impl Body<'_, '_> {
         let of = self.an.instance_of(self.pou?);
         let this = self.this_as(of);
         let run = self.run(of, &this, Some(name), signature, range);
-        Some(Callee::Method(Target { signature, run }))
+        Some(Callee::Method(Target {
+            signature,
+            run,
+            presence: Presence::default(),
+        }))
     }
 
     /// `operand.name`, if that is a method.
@@ -301,6 +309,7 @@ impl Body<'_, '_> {
         if !self.check_method(signature, name.range) {
             return Some(Callee::Mistake);
         }
+        let mut presence = Presence::default();
         let run = match (&operand.kind, self.an.pou(of).has_instances()) {
             (OperandKind::Place(place), true) if self.is_this(place, of) => {
                 let own = self.pou.map_or(of, |pou| self.an.instance_of(pou));
@@ -308,12 +317,16 @@ impl Body<'_, '_> {
                 self.run(own, &this, Some(name.name), signature, operand.range)
             }
             (OperandKind::Place(place), true) => {
-                let place = place.clone();
+                let place = self.present(place.clone(), operand.range, &mut presence);
                 self.run(of, &place, Some(name.name), signature, operand.range)
             }
-            _ => self.run_through(of, operand, name.name, signature),
+            _ => self.run_through(of, operand, name.name, signature, &mut presence),
         };
-        Some(Callee::Method(Target { signature, run }))
+        Some(Callee::Method(Target {
+            signature,
+            run,
+            presence,
+        }))
     }
 
     /// Whether a place is the whole instance that the body works on.
@@ -393,15 +406,21 @@ impl Body<'_, '_> {
         operand: &Operand,
         method: Symbol,
         signature: PouId,
+        presence: &mut Presence,
     ) -> Run {
-        let address = self.raw(operand);
         let root = Root::Deref {
-            address,
+            address: self.raw(operand),
             ty: Type::Elementary(Elementary::Udint),
             checked: false,
         };
+        let instance = Place {
+            root,
+            steps: Vec::new(),
+            rights: Rights::All,
+        };
         // NULL is to be found here, where the user wrote the call.
-        let path = self.add_path(root, Vec::new(), operand.range);
+        let instance = self.present(instance, operand.range, presence);
+        let path = self.path_of(&instance, operand.range);
         let address = self.add_expr(ExprKind::Address(path), Elementary::Ulint, operand.range);
         let dispatcher = self.an.dispatcher(of, Some(method), signature);
         let dispatcher = dispatcher.expect("interfaces always choose");
@@ -447,7 +466,11 @@ impl Body<'_, '_> {
             return Callee::Mistake;
         }
         let run = self.run_base(signature);
-        Callee::Method(Target { signature, run })
+        Callee::Method(Target {
+            signature,
+            run,
+            presence: Presence::default(),
+        })
     }
 
     fn run_base(&mut self, body: PouId) -> Run {

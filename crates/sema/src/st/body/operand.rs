@@ -67,6 +67,15 @@ impl Operand {
         }
     }
 
+    /// What a call without a result gives.
+    pub(crate) fn nothing(range: TextRange) -> Self {
+        Self {
+            kind: OperandKind::Const(Const::Null),
+            ty: TypeId::NOTHING,
+            range,
+        }
+    }
+
     /// A known value.
     pub(crate) fn constant(value: Const, ty: TypeId, range: TextRange) -> Self {
         Self {

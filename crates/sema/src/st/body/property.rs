@@ -164,11 +164,14 @@ impl Body<'_, '_> {
         let Some(callee) = self.accessor(property, Access::Get) else {
             return Operand::error(range);
         };
-        let Callee::Method(target) = callee else {
+        let Callee::Method(mut target) = callee else {
             return Operand::error(name.range);
         };
         self.an.complete(target.signature);
-        let read = self.finish_call(target, Vec::new(), Vec::new(), None, range);
+        let presence = std::mem::take(&mut target.presence);
+        let read = self.if_present(presence, None, range, |body| {
+            body.finish_call(target, Vec::new(), Vec::new(), None, range)
+        });
         self.as_value(read)
     }
 
@@ -212,7 +215,7 @@ impl Body<'_, '_> {
         value: st::Id<st::Expr>,
         range: TextRange,
     ) {
-        let Some(Callee::Method(target)) = self.accessor(property, Access::Set) else {
+        let Some(Callee::Method(mut target)) = self.accessor(property, Access::Set) else {
             self.expr(value, None);
             return;
         };
@@ -220,8 +223,11 @@ impl Body<'_, '_> {
         let Some(var) = self.an.pou(target.signature).vars.first().cloned() else {
             return;
         };
-        let value = self.expr(value, Some(var.ty));
-        self.finish_call(target, vec![(var, value)], Vec::new(), None, range);
+        let presence = std::mem::take(&mut target.presence);
+        self.if_present(presence, None, range, |body| {
+            let value = body.expr(value, Some(var.ty));
+            body.finish_call(target, vec![(var, value)], Vec::new(), None, range)
+        });
     }
 
     /// The accessor that runs; a message if there is none.

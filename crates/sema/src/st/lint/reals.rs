@@ -43,6 +43,7 @@ impl Body<'_, '_> {
             | ExprKind::Call(_)
             | ExprKind::After(..)
             | ExprKind::Address(_)
+            | ExprKind::Exists(_)
             | ExprKind::Now
             | ExprKind::Elapsed(_)
             | ExprKind::ElapsedUnits(_) => false,

@@ -1,11 +1,13 @@
 //! Calls of blocks: inputs are stored in the instance, the body runs, outputs are fetched.
 
+use super::presence::Presence;
 use crate::hir::code::{Call, ExprKind, PathId, PathStep, StmtKind};
 use crate::st::body::object::{Run, Target};
 use crate::st::body::{Body, Operand, OperandKind, Place, Rights};
 use crate::st::constant::Const;
 use crate::st::signature::{PouId, Storage, Var};
 use crate::st::types::TypeId;
+use iecc_ast::Symbol;
 use iecc_ast::st::{self, Argument, ArgumentKind, SectionKind};
 use iecc_source::TextRange;
 
@@ -14,7 +16,7 @@ impl Body<'_, '_> {
     pub(crate) fn block_call(
         &mut self,
         pou: PouId,
-        place: &Place,
+        place: Place,
         arguments: st::List<Argument>,
         range: TextRange,
     ) {
@@ -22,18 +24,40 @@ impl Body<'_, '_> {
         let Some(pou) = self.open_instance(pou, arguments, range) else {
             return;
         };
+        let mut presence = Presence::default();
+        let place = self.present(place, range, &mut presence);
         let matched = self.matched(pou, arguments, range);
+        let in_outs = self.present_in_outs(&matched, &mut presence);
+        let eno = self.eno_target(arguments);
+        self.if_present(presence, eno, range, |body| {
+            body.present_block_call(pou, &place, &matched, &in_outs, eno, range);
+            Operand::nothing(range)
+        });
+    }
+
+    /// A call of an instance that is there, with in-outs that are.
+    fn present_block_call(
+        &mut self,
+        pou: PouId,
+        place: &Place,
+        matched: &[(Var, Argument)],
+        in_outs: &[(Symbol, Operand)],
+        eno: Option<Argument>,
+        range: TextRange,
+    ) {
         let mut refs: Vec<Option<PathId>> = Vec::new();
         let shape = self.an.call_shape(pou);
         refs.resize(shape.refs.len(), None);
-        for (var, argument) in &matched {
+        for (var, argument) in matched {
             let Some(value) = argument.value else {
                 continue;
             };
             match var.section {
                 SectionKind::Input => self.block_input(pou, place, var, value),
                 SectionKind::InOut => {
-                    let path = self.in_out(var, value);
+                    let found = in_outs.iter().find(|(name, _)| *name == var.name);
+                    let (_, operand) = found.expect("in-outs were looked for");
+                    let path = self.reference_argument(var, operand);
                     if let (Storage::Ref(position), Some(path)) = (&var.storage, path) {
                         refs[*position as usize - 1] = Some(path);
                     }
@@ -49,16 +73,16 @@ impl Body<'_, '_> {
                 | SectionKind::Instance => {}
             }
         }
-        self.require_in_outs(pou, &matched, range);
+        self.require_in_outs(pou, matched, range);
         let run = self.run(pou, place, None, pou, range);
         let given: Option<Vec<PathId>> = refs.into_iter().collect();
-        let eno = self.eno_target(arguments);
         let mut changes_eno = false;
         let eno_place = eno.map(|_| self.temporary("ENO", TypeId::BOOL));
         if let Some(given) = given {
             let target = Target {
                 signature: pou,
                 run,
+                presence: Presence::default(),
             };
             changes_eno = self.shape_of(&target).eno;
             let callee = self.run_unit(&target);
@@ -85,7 +109,7 @@ impl Body<'_, '_> {
             let call = self.unless_mocked(pou, place, call, eno, range);
             self.pending.push(call);
         }
-        for (var, argument) in &matched {
+        for (var, argument) in matched {
             if var.section == SectionKind::Output {
                 self.block_output(pou, place, var, argument);
             }

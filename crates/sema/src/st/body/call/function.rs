@@ -5,7 +5,6 @@ use crate::st::body::library::Given;
 use crate::st::body::object::{Run, Target, function_target};
 use crate::st::body::place::shared_bytes;
 use crate::st::body::{Body, Operand, OperandKind, Place, Rights};
-use crate::st::constant::Const;
 use crate::st::signature::{Bindings, PouId, Var};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
@@ -74,12 +73,29 @@ impl Body<'_, '_> {
     ) -> Operand {
         let callee = target.signature;
         self.an.complete(callee);
-        let Some(target) = self.open_target(target, arguments, range) else {
+        let Some(mut target) = self.open_target(target, arguments, range) else {
             return Operand::error(range);
         };
         let callee = target.signature;
         let matched = self.matched(callee, arguments, range);
         self.require_in_outs(callee, &matched, range);
+        let mut presence = std::mem::take(&mut target.presence);
+        let in_outs = self.present_in_outs(&matched, &mut presence);
+        let eno = self.eno_target(arguments);
+        self.if_present(presence, eno, range, |body| {
+            body.with_arguments(target, matched, &in_outs, eno, range)
+        })
+    }
+
+    /// A call on an instance that is there, with in-outs that are.
+    fn with_arguments(
+        &mut self,
+        target: Target,
+        matched: Vec<(Var, Argument)>,
+        in_outs: &[(Symbol, Operand)],
+        eno: Option<Argument>,
+        range: TextRange,
+    ) -> Operand {
         let (mut given, mut outputs) = (Vec::new(), Vec::new());
         for (var, argument) in matched {
             let Some(value) = argument.value else {
@@ -88,8 +104,9 @@ impl Body<'_, '_> {
             match var.section {
                 SectionKind::Output => outputs.push((var, argument)),
                 SectionKind::InOut => {
-                    let operand = self.place(value, None);
-                    given.push((var, operand));
+                    let found = in_outs.iter().find(|(name, _)| *name == var.name);
+                    let (_, operand) = found.expect("in-outs were looked for");
+                    given.push((var, operand.clone()));
                 }
                 SectionKind::Var
                 | SectionKind::Input
@@ -105,7 +122,6 @@ impl Body<'_, '_> {
                 }
             }
         }
-        let eno = self.eno_target(arguments);
         self.finish_call(target, given, outputs, eno, range)
     }
 
@@ -180,7 +196,11 @@ impl Body<'_, '_> {
                 return None;
             }
         };
-        Some(Target { signature, run })
+        Some(Target {
+            signature,
+            run,
+            presence: target.presence,
+        })
     }
 
     /// Writes a call down: omitted inputs take their defaults, outputs go where they are wanted.
@@ -351,11 +371,7 @@ impl Body<'_, '_> {
                 ty,
                 range,
             },
-            _ => Operand {
-                kind: OperandKind::Const(Const::Null),
-                ty: TypeId::NOTHING,
-                range,
-            },
+            _ => Operand::nothing(range),
         }
     }
 

@@ -5,11 +5,13 @@ mod block;
 mod builtin;
 mod function;
 mod mock;
+mod presence;
+
+pub(super) use presence::Presence;
 
 use super::object::Target;
 use super::{Body, Operand, OperandKind, Place};
-use crate::hir::code::{ExprKind, PathStep, Root, StmtKind};
-use crate::st::constant::Const;
+use crate::hir::code::StmtKind;
 use crate::st::signature::{Def, PouId};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
@@ -59,63 +61,26 @@ impl Body<'_, '_> {
         found.copied()
     }
 
-    /// What `run` does, only if the EN of a call is TRUE; else ENO of the call is FALSE and nothing
-    /// happens.
+    /// What `run` does, only if the EN of a call is TRUE; else the call is skipped.
     pub(super) fn enabled(
         &mut self,
         call: st::Id<st::Expr>,
         enable: st::Id<st::Expr>,
-        run: impl FnOnce(&mut Self),
-    ) {
-        let range = self.arena()[call].range;
-        let condition = self.scalar_expr(enable, TypeId::BOOL);
-        let outer = std::mem::take(&mut self.pending);
-        let skipped = self.skips.insert(call);
-        run(self);
-        if skipped {
-            self.skips.remove(&call);
-        }
-        let then = std::mem::take(&mut self.pending);
-        if let Written::Call { arguments, .. } = self.arena()[call].kind
-            && let Some(eno) = self.eno_target(arguments)
-            && let Some(target) = eno.value
-        {
-            let none = Operand::constant(Const::Int(0), TypeId::BOOL, range);
-            self.output_to(none, target, &eno);
-        }
-        let otherwise = std::mem::replace(&mut self.pending, outer);
-        let kind = StmtKind::If {
-            arms: vec![(condition, then)],
-            otherwise,
-        };
-        self.before(kind, range);
-    }
-
-    /// The value of a call with EN inside of an expression: where the call is skipped, the default
-    /// of its type.
-    fn enabled_value(
-        &mut self,
-        id: st::Id<st::Expr>,
-        enable: st::Id<st::Expr>,
-        want: Option<TypeId>,
+        run: impl FnOnce(&mut Self) -> Operand,
     ) -> Operand {
-        let range = self.arena()[id].range;
-        let mut result = Operand::error(range);
-        self.enabled(id, enable, |body| {
-            let value = body.expr(id, want);
-            if value.is_error() {
-                return;
+        let Written::Call { arguments, .. } = self.arena()[call].kind else {
+            unreachable!("what has EN is a call")
+        };
+        let condition = self.scalar_expr(enable, TypeId::BOOL);
+        let (eno, range) = (self.eno_target(arguments), self.arena()[call].range);
+        self.call_if(condition, eno, range, |body| {
+            let noted = body.skips.insert(call);
+            let result = run(body);
+            if noted {
+                body.skips.remove(&call);
             }
-            let ty = body.settle(&value);
-            let place = body.temporary("result", ty);
-            body.store(&place, ty, &value, range);
-            result = Operand {
-                kind: OperandKind::Place(place),
-                ty,
-                range,
-            };
-        });
-        result
+            result
+        })
     }
 
     /// A call as a statement.
@@ -128,7 +93,11 @@ impl Body<'_, '_> {
         if let Some(enable) = self.enable(id)
             && !self.skips.contains(&id)
         {
-            self.enabled(id, enable, |body| body.call_statement(id));
+            let range = self.arena()[id].range;
+            self.enabled(id, enable, |body| {
+                body.call_statement(id);
+                Operand::nothing(range)
+            });
             return;
         }
         let written = self.arena()[id];
@@ -161,7 +130,7 @@ impl Body<'_, '_> {
         }
         match self.callee(callee, written.range) {
             Some(Callee::Block(pou, place)) => {
-                self.block_call(pou, &place, arguments, written.range);
+                self.block_call(pou, place, arguments, written.range);
             }
             Some(Callee::Mistake) | None => self.arguments_only(arguments),
             Some(callee) => {
@@ -189,7 +158,7 @@ impl Body<'_, '_> {
                 let message = "a constant is needed here, and EN may skip a call";
                 return self.error(Message::E2030, range, message);
             }
-            return self.enabled_value(id, enable, want);
+            return self.enabled(id, enable, |body| body.expr(id, want));
         }
         if let Some(operand) = self.typed_conversion(callee, arguments, range, want) {
             return operand;
@@ -384,38 +353,11 @@ impl Body<'_, '_> {
         {
             let (pou, place) = (*pou, place.clone());
             if self.an.pou(pou).kind != PouKind::Class {
-                let place = self.freeze(place, operand.range);
                 return Some(Callee::Block(pou, place));
             }
         }
         let message = format!("{} cannot be called", self.type_name(operand.ty));
         self.error(Message::E1018, operand.range, message);
         None
-    }
-
-    /// The place with its subscripts and references evaluated now, for several uses.
-    fn freeze(&mut self, mut place: Place, range: TextRange) -> Place {
-        if let Root::Deref { address, .. } = &mut place.root {
-            *address = self.freeze_value(*address, range);
-        }
-        for step in &mut place.steps {
-            if let PathStep::IndexBy { value, .. } | PathStep::Character { value, .. } = step {
-                *value = self.freeze_value(*value, range);
-            }
-        }
-        place
-    }
-
-    fn freeze_value(
-        &mut self,
-        value: crate::hir::code::ExprId,
-        range: TextRange,
-    ) -> crate::hir::code::ExprId {
-        let ty = self.code.expr(value).ty;
-        let local = self.add_local("index", crate::hir::Type::Elementary(ty));
-        let path = self.add_path(Root::Local(local), Vec::new(), range);
-        self.before(StmtKind::Assign(path, value), range);
-        let path = self.add_path(Root::Local(local), Vec::new(), range);
-        self.add_expr(ExprKind::Load(path), ty, range)
     }
 }

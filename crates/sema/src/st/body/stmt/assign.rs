@@ -21,7 +21,10 @@ impl Body<'_, '_> {
             && !self.skips.contains(&value)
         {
             // Where the call is skipped, the variable keeps its value.
-            self.enabled(value, enable, |body| body.assign(target, op, value, range));
+            self.enabled(value, enable, |body| {
+                body.assign(target, op, value, range);
+                Operand::nothing(range)
+            });
             return;
         }
         if op != AssignOp::Set {
