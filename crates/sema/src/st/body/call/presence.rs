@@ -133,7 +133,10 @@ impl Body<'_, '_> {
                 let ty = self.an.scalar(result.ty);
                 self.add_expr(ExprKind::Load(path), ty, range)
             }
-            _ => {
+            OperandKind::Error
+            | OperandKind::Const(_)
+            | OperandKind::Value(_)
+            | OperandKind::Place(_) => {
                 self.pending.append(&mut made);
                 return result;
             }
