@@ -110,6 +110,8 @@ pub(crate) struct Analysis<'a> {
     /// How many bodies have a name.
     pub unit_names: FxHashMap<String, u32>,
     pub hir_ids: FxHashMap<PouId, hir::PouId>,
+    /// Bodies that constants have called.
+    pub computed: super::initial::Computed,
     /// The unit tests.
     pub testing: super::testing::Testing,
     pub found: Diagnostics,

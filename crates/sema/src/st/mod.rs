@@ -242,6 +242,7 @@ impl<'a> Analysis<'a> {
             synthetics: Vec::new(),
             unit_names: FxHashMap::default(),
             hir_ids: FxHashMap::default(),
+            computed: initial::Computed::default(),
             testing: testing::Testing::new(names),
             found: Diagnostics::new(),
             warnings: Vec::new(),

@@ -3,17 +3,20 @@
 //!
 //! What code computes is defined elsewhere, so the expression becomes a program that an [`Evaluator`]
 //! runs once: a constant has the bits that the same expression has when it runs. Bodies are made for
-//! this alone and dropped: they are not part of the user's program.
+//! this alone, once for all constants; they are not part of the user's program.
 
 use crate::hir::code::{Code, Root, StmtKind};
-use crate::hir::{self, Place, PouId, Step, TagId};
+use crate::hir::{self, Place, Step, TagId};
 use crate::st::analysis::Analysis;
 use crate::st::body::{Body, Operand, OperandKind};
 use crate::st::constant::Const;
+use crate::st::signature::PouId;
 use crate::st::types::{TypeId, TypeKind};
 use iecc_diag::Code as Message;
 use iecc_source::Span;
+use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::rc::Rc;
 
 /// Runs typed programs.
@@ -104,9 +107,9 @@ impl Analysis<'_> {
         places: &[Place],
         span: Span,
     ) -> Result<Vec<u64>, String> {
-        let names = std::mem::take(&mut self.unit_names);
+        std::mem::swap(&mut self.unit_names, &mut self.computed.names);
         let pous = self.closed(code, span);
-        self.unit_names = names;
+        std::mem::swap(&mut self.unit_names, &mut self.computed.names);
         self.drop_wanted(mark);
         let mut program = hir::Program {
             types: std::mem::take(&mut self.hir.types),
@@ -115,7 +118,7 @@ impl Analysis<'_> {
             pous,
             tasks: vec![hir::Task {
                 name: "constant".to_owned(),
-                calls: vec![PouId::from_index(0)],
+                calls: vec![hir::PouId::from_index(0)],
                 ..hir::Task::default()
             }],
             ..hir::Program::empty()
@@ -128,32 +131,78 @@ impl Analysis<'_> {
 
     /// A unit with some code, and all that it calls.
     fn closed(&mut self, code: Code, span: Span) -> Vec<hir::Pou> {
-        let mut pous = vec![hir::Pou {
+        let constant = hir::Pou {
             name: "constant".to_owned(),
             parameters: Vec::new(),
             results: Vec::new(),
             body: hir::Body::Text(Box::new(code)),
             span,
-        }];
-        let (mut ids, mut next) = (BTreeMap::new(), 0);
-        let mut called: Vec<PouId> = Vec::new();
-        while next < pous.len() {
-            let hir::Body::Text(code) = &mut pous[next].body else {
-                unreachable!("library functions are text")
-            };
-            for call in &mut code.calls {
-                call.callee = *ids.entry(call.callee).or_insert_with(|| {
-                    called.push(call.callee);
-                    PouId::from_index(called.len())
-                });
-            }
-            for id in &called[pous.len() - 1..] {
-                let unit = self.wanted[id.index()];
-                pous.push(self.checked_pou(unit).0);
+        };
+        let mut linked = vec![self.loose(constant)];
+        let mut ids: BTreeMap<PouId, hir::PouId> = BTreeMap::new();
+        let mut next = 0;
+        while next < linked.len() {
+            let calling = Rc::clone(&linked[next]);
+            for &callee in &calling.callees {
+                if let Entry::Vacant(unknown) = ids.entry(callee) {
+                    unknown.insert(hir::PouId::from_index(linked.len()));
+                    linked.push(self.computed_body(callee));
+                }
             }
             next += 1;
         }
-        pous
+        linked.iter().map(|loose| loose.linked(&ids)).collect()
+    }
+
+    /// The body of a library unit, looked at once for all constants.
+    fn computed_body(&mut self, unit: PouId) -> Rc<Loose> {
+        if let Some(known) = self.computed.bodies.get(&unit) {
+            return Rc::clone(known);
+        }
+        let (pou, _) = self.checked_pou(unit);
+        let loose = self.loose(pou);
+        self.computed.bodies.insert(unit, Rc::clone(&loose));
+        loose
+    }
+
+    fn loose(&self, mut pou: hir::Pou) -> Rc<Loose> {
+        let calls = text_of(&mut pou).calls.iter();
+        let callees = calls.map(|call| self.wanted[call.callee.index()]).collect();
+        Rc::new(Loose { pou, callees })
+    }
+}
+
+/// What constants have in common.
+#[derive(Debug, Default)]
+pub(crate) struct Computed {
+    bodies: FxHashMap<PouId, Rc<Loose>>,
+    /// How many of their units have a name.
+    names: FxHashMap<String, u32>,
+}
+
+/// A body that no program has yet.
+#[derive(Debug)]
+struct Loose {
+    pou: hir::Pou,
+    /// What each of its calls runs.
+    callees: Vec<PouId>,
+}
+
+impl Loose {
+    /// The body in a program that has units at these places.
+    fn linked(&self, ids: &BTreeMap<PouId, hir::PouId>) -> hir::Pou {
+        let mut pou = self.pou.clone();
+        for (call, callee) in text_of(&mut pou).calls.iter_mut().zip(&self.callees) {
+            call.callee = ids[callee];
+        }
+        pou
+    }
+}
+
+fn text_of(pou: &mut hir::Pou) -> &mut Code {
+    match &mut pou.body {
+        hir::Body::Text(code) => code,
+        hir::Body::Ladder(_) => unreachable!("library functions are text"),
     }
 }
 

@@ -4,6 +4,7 @@ mod array;
 mod evaluate;
 mod leaves;
 
+pub(crate) use evaluate::Computed;
 pub use evaluate::Evaluator;
 
 use super::analysis::Analysis;
