@@ -11,7 +11,7 @@
     reason = "a program for people"
 )]
 
-use iecc_driver::{KeptLibrary, parallel_map};
+use iecc_driver::{ParsedLibrary, parallel_map};
 use iecc_tests::random_st::{Options, Outcome, check, check_seed, policy, random_program};
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -40,7 +40,7 @@ fn main() -> ExitCode {
 }
 
 fn search(from: u64, to: u64) -> ExitCode {
-    let (library, start) = (KeptLibrary::parse(), Instant::now());
+    let (library, start) = (ParsedLibrary::parse(), Instant::now());
     for first in (from..to).step_by(ROUND as usize) {
         let seeds: Vec<u64> = (first..to.min(first + ROUND)).collect();
         let results = parallel_map(&seeds, |&seed| {
@@ -61,7 +61,7 @@ fn search(from: u64, to: u64) -> ExitCode {
 }
 
 fn survey(from: u64, to: u64) -> ExitCode {
-    let library = KeptLibrary::parse();
+    let library = ParsedLibrary::parse();
     let seeds: Vec<u64> = (from..to).collect();
     let results = parallel_map(&seeds, |&seed| {
         let draft = random_program(seed, Options::default());

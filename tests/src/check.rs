@@ -8,7 +8,7 @@ use iecc_ast::Names;
 use iecc_ast::rung::Rung;
 use iecc_ast::st::{File, UnitKind, dump, print_file};
 use iecc_diag::{Code, Diagnostics};
-use iecc_driver::{FrontOptions, KeptLibrary};
+use iecc_driver::{FrontOptions, ParsedLibrary};
 use iecc_grammar::st::{Dialect, parse_file};
 use iecc_ir::{Layout, MemType, Module, Region};
 use iecc_passes::{HARDWARE, SOFTWARE, Settings, run_pipeline};
@@ -170,7 +170,7 @@ fn outline(file: &File, names: &Names) -> String {
 
 /// Structured Text as a program gives a module that keeps the rules of the IR, or an error; every place
 /// lies in the text or in the library. Says which.
-pub fn st_program(library: &KeptLibrary, text: &str, options: &FrontOptions) -> bool {
+pub fn st_program(library: &ParsedLibrary, text: &str, options: &FrontOptions) -> bool {
     let mut diagnostics = Diagnostics::new();
     let module = library.compile(text, options, &mut diagnostics);
     let own = library.file();

@@ -7,7 +7,7 @@
 use iecc_ast::Names;
 use iecc_conformance::Case;
 use iecc_diag::Diagnostics;
-use iecc_driver::{FrontOptions, KeptLibrary, parallel_map};
+use iecc_driver::{FrontOptions, ParsedLibrary, parallel_map};
 use iecc_grammar::st::{lex, parse_file};
 use iecc_tests::cases::suite;
 use std::time::{Duration, Instant};
@@ -17,14 +17,14 @@ const LONGEST: Duration = Duration::from_secs(5);
 
 #[test]
 fn every_prefix_of_every_case_is_read() {
-    let (library, cases) = (KeptLibrary::parse(), suite());
+    let (library, cases) = (ParsedLibrary::parse(), suite());
     let slow = parallel_map(&cases, |case| slow_prefix(&library, case));
     let slow: Vec<_> = slow.into_iter().flatten().collect();
     assert!(slow.is_empty(), "prefixes that take too long: {slow:?}");
 }
 
 /// The case and the end of its first prefix that takes too long.
-fn slow_prefix(library: &KeptLibrary, case: &Case) -> Option<(String, usize)> {
+fn slow_prefix(library: &ParsedLibrary, case: &Case) -> Option<(String, usize)> {
     let program = program(case);
     let tokens = token_ends(library, case);
     let mut ends = program.char_indices().map(|(at, _)| at);
@@ -43,7 +43,7 @@ fn program(case: &Case) -> &str {
         .map_or("", |(_, program)| program)
 }
 
-fn token_ends(library: &KeptLibrary, case: &Case) -> Vec<usize> {
+fn token_ends(library: &ParsedLibrary, case: &Case) -> Vec<usize> {
     let tokens = lex(
         library.file(),
         program(case),
@@ -54,7 +54,7 @@ fn token_ends(library: &KeptLibrary, case: &Case) -> Vec<usize> {
     ends.map(|token| token.end as usize).collect()
 }
 
-fn read(library: &KeptLibrary, case: &Case, text: &str, whole: bool) {
+fn read(library: &ParsedLibrary, case: &Case, text: &str, whole: bool) {
     let mut diagnostics = Diagnostics::new();
     if whole {
         let options = FrontOptions {

@@ -1,7 +1,7 @@
 //! Random programs in Structured Text: the compiler accepts them all, and interpreter, optimised
 //! interpreter and machine code agree in every output, fault and state byte of every scan.
 
-use iecc_driver::{KeptLibrary, parallel_map};
+use iecc_driver::{ParsedLibrary, parallel_map};
 use iecc_tests::random_ir::seeds;
 use iecc_tests::random_st::{Options, check_seed};
 
@@ -10,7 +10,7 @@ const SEEDS: u64 = 2_000;
 #[test]
 fn engines_agree_on_random_programs() {
     let seeds: Vec<u64> = seeds(SEEDS).collect();
-    let library = KeptLibrary::parse();
+    let library = ParsedLibrary::parse();
     let results = parallel_map(&seeds, |&seed| {
         check_seed(&library, seed, Options::default())
     });

@@ -2,7 +2,7 @@
 //! gives the outputs of the interpreter in every scan. It refuses most: loops, divisions, REAL, strings.
 
 use iecc_diag::Diagnostics;
-use iecc_driver::{EngineKind, FrontOptions, KeptLibrary, OnFault, parallel_map};
+use iecc_driver::{EngineKind, FrontOptions, OnFault, ParsedLibrary, parallel_map};
 use iecc_ir::{Module, Region};
 use iecc_target::region_bytes;
 use iecc_tests::random_ir::seeds;
@@ -23,7 +23,7 @@ const SMALL: Options = Options {
 
 #[test]
 fn hardware_agrees_on_random_programs() {
-    let library = KeptLibrary::parse();
+    let library = ParsedLibrary::parse();
     let seeds: Vec<u64> = seeds(SEEDS).collect();
     let results = parallel_map(&seeds, |&seed| run(&library, seed));
     let taken = results.into_iter().filter(|taken| *taken).count();
@@ -31,7 +31,7 @@ fn hardware_agrees_on_random_programs() {
 }
 
 /// Runs the program of a seed; says whether hardware takes it.
-fn run(library: &KeptLibrary, seed: u64) -> bool {
+fn run(library: &ParsedLibrary, seed: u64) -> bool {
     let draft = random_program(seed, SMALL);
     let options = FrontOptions {
         on_fault: OnFault::Continue,

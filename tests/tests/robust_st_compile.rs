@@ -4,7 +4,7 @@
 #![expect(clippy::disallowed_methods, reason = "the bound on time needs a clock")]
 
 use iecc_conformance::Case;
-use iecc_driver::{FrontOptions, KeptLibrary, parallel_map};
+use iecc_driver::{FrontOptions, ParsedLibrary, parallel_map};
 use iecc_tests::cases::suite;
 use iecc_tests::check::st_program;
 use iecc_tests::damage::damage;
@@ -20,7 +20,7 @@ const LONGEST: Duration = Duration::from_secs(10);
 
 /// Compiles a text made of two cases for every seed; says how many are accepted.
 fn for_all_seeds(make: impl Fn(&Case, &Case, &mut Rng) -> String + Sync) -> usize {
-    let (library, cases) = (KeptLibrary::parse(), suite());
+    let (library, cases) = (ParsedLibrary::parse(), suite());
     let seeds: Vec<u64> = seeds(SEEDS).collect();
     let accepted = parallel_map(&seeds, |&seed| {
         let rng = &mut Rng::new(seed);

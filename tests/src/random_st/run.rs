@@ -6,7 +6,7 @@ use crate::differential::{Agreement, Difference, Subject, compare_engines, inter
 use crate::rng::Rng;
 use crate::stimulus::{ScanInput, random_stimulus};
 use iecc_diag::{Diagnostics, Severity, render_text};
-use iecc_driver::{FrontOptions, KeptLibrary, OnFault};
+use iecc_driver::{FrontOptions, OnFault, ParsedLibrary};
 use iecc_ir::{Module, Region, verify};
 use iecc_jit::Jit;
 use iecc_passes::{SOFTWARE, Settings, run_pipeline};
@@ -29,7 +29,7 @@ pub struct Outcome {
 ///
 /// # Errors
 /// What is wrong, with a program that was shrunk.
-pub fn check_seed(library: &KeptLibrary, seed: u64, options: Options) -> Result<Outcome, String> {
+pub fn check_seed(library: &ParsedLibrary, seed: u64, options: Options) -> Result<Outcome, String> {
     let draft = random_program(seed, options);
     let policy = policy(seed);
     check(library, draft.text(), policy, seed).map_err(|what| {
@@ -63,7 +63,7 @@ fn kind_of(what: &str) -> &str {
 /// # Errors
 /// What is wrong: it was refused, the compiler panicked, or engines differ.
 pub fn check(
-    library: &KeptLibrary,
+    library: &ParsedLibrary,
     text: &str,
     policy: OnFault,
     seed: u64,
@@ -83,7 +83,7 @@ pub fn check(
     })
 }
 
-fn module(library: &KeptLibrary, text: &str, policy: OnFault) -> Result<Module, String> {
+fn module(library: &ParsedLibrary, text: &str, policy: OnFault) -> Result<Module, String> {
     let options = FrontOptions {
         on_fault: policy,
         ..FrontOptions::default()
@@ -137,7 +137,7 @@ fn same(
 
 /// What runs without a fault gives the same outputs where faults do not stop.
 fn same_without_faults(
-    library: &KeptLibrary,
+    library: &ParsedLibrary,
     text: &str,
     trapping: &Module,
     seed: u64,

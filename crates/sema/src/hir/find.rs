@@ -1,15 +1,14 @@
-//! Paths as users write them outside programs: in options and on the command line.
+//! What paths lead to that users write outside of programs.
 
+use super::written::{StepKind, heads, steps};
 use crate::hir::{BASE, Place, Program, Step, TagId, Type};
 
 /// The place a path names.
 pub(crate) fn place(program: &Program, path: &str) -> Option<Place> {
     let path = path.trim();
-    // Names may themselves contain dots, so each prefix that ends at a step is tried.
-    let ends = path.match_indices(['.', '[']).map(|(index, _)| index);
-    ends.chain([path.len()]).find_map(|end| {
-        let start = named(program, &path[..end])?;
-        follow(program, start, &path[end..])
+    heads(path).find_map(|head| {
+        let start = named(program, head)?;
+        steps(path, head).try_fold(start, |place, step| follow(program, place, step.kind))
     })
 }
 
@@ -26,23 +25,12 @@ fn named(program: &Program, name: &str) -> Option<Place> {
     found.next().map(|(_, place)| place.clone())
 }
 
-fn follow(program: &Program, mut place: Place, mut rest: &str) -> Option<Place> {
-    while !rest.is_empty() {
-        let indexed = rest.starts_with('[');
-        let body = &rest[1..];
-        let end = if indexed {
-            body.find(']')?
-        } else {
-            body.find(['.', '[']).unwrap_or(body.len())
-        };
-        place = if indexed {
-            indexes(program, place, &body[..end])?
-        } else {
-            member(program, place, &body[..end])?
-        };
-        rest = &body[end + usize::from(indexed)..];
+fn follow(program: &Program, place: Place, step: StepKind<'_>) -> Option<Place> {
+    match step {
+        StepKind::Member(name) => member(program, place, name),
+        StepKind::Indices(list) => indexes(program, place, list),
+        StepKind::Unclosed | StepKind::Stray(_) => None,
     }
-    Some(place)
 }
 
 fn indexes(program: &Program, place: Place, text: &str) -> Option<Place> {

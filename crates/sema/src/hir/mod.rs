@@ -9,6 +9,7 @@ mod find;
 mod ladder;
 mod place;
 mod types;
+pub mod written;
 
 pub use code::{Code, InitId, Inits};
 pub use ladder::{

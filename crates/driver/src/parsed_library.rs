@@ -1,4 +1,4 @@
-//! The standard library, parsed once for many small programs: tests check tens of thousands.
+//! The standard library, parsed once for many small programs, such as the tens of thousands that tests check.
 //!
 //! What a program means, and what is said of it, is the same as in [`check`](crate::check).
 
@@ -14,19 +14,19 @@ use iecc_source::{FileId, SourceMap};
 
 /// The parsed library.
 #[derive(Debug)]
-pub struct KeptLibrary {
+pub struct ParsedLibrary {
     map: SourceMap,
     names: Names,
     files: Vec<File>,
 }
 
-impl Default for KeptLibrary {
+impl Default for ParsedLibrary {
     fn default() -> Self {
         Self::parse()
     }
 }
 
-impl KeptLibrary {
+impl ParsedLibrary {
     /// Parses the library.
     pub fn parse() -> Self {
         let (mut map, mut names) = (SourceMap::new(), Names::new());
