@@ -177,10 +177,12 @@ impl Diagnostics {
         self.list.retain_mut(keep);
     }
 
-    /// Sorts by file and place, errors without place first, keeping the order of equals.
+    /// Sorts by file and place, errors without place first, keeping the order of equals. What is said
+    /// twice, of a type by each of its variables, is kept once.
     pub fn sort(&mut self) {
         self.list
             .sort_by_key(|d| d.primary.as_ref().map(|label| (label.span, d.code)));
+        self.list.dedup();
     }
 }
 

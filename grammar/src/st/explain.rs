@@ -111,7 +111,9 @@ fn describe(expected: &[String]) -> String {
     ] {
         let part_of_value = value && (sign == "(" || sign == "[");
         let continues = has("**") && [".", "[", "(", "="].contains(&sign);
-        if has(sign) && !part_of_value && !continues {
+        // A further assignment is of CODESYS, and seldom what is missing.
+        let again = sign == ":=" && has("**") && has(";") && !has("?=");
+        if has(sign) && !part_of_value && !continues && !again {
             list.push(format!("`{sign}`"));
         }
     }

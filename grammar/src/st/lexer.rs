@@ -23,6 +23,8 @@ pub struct Tokens<'t> {
     pub list: Vec<Token>,
     /// The symbol that stands where a name is missing.
     pub no_name: Symbol,
+    /// Whose words and forms these are.
+    pub dialect: Dialect,
 }
 
 /// Makes tokens of a text, and enters its names.
@@ -51,6 +53,7 @@ pub fn lex<'t>(file: FileId, text: &'t str, dialect: Dialect, names: &mut Names)
         text,
         list,
         no_name,
+        dialect,
     }
 }
 

@@ -234,6 +234,8 @@ pub struct VarDecl {
     pub edge: Option<Edge>,
     /// The initial value.
     pub initial: Option<Id<Expr>>,
+    /// Whether it stands behind `REF=` (CODESYS): what a REFERENCE stands for at the start.
+    pub bound: bool,
     /// All of it.
     pub range: TextRange,
 }

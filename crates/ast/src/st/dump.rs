@@ -148,6 +148,12 @@ impl Dump<'_> {
                 let (target, value) = (self.expr(target), self.expr(value));
                 self.line(format!("{} {target} {value}", op.as_str()));
             }
+            StmtKind::AssignAll { targets, value } => {
+                let targets = self.arena[targets].iter();
+                let targets: Vec<String> = targets.map(|target| self.expr(*target)).collect();
+                let value = self.expr(value);
+                self.line(format!(":= {} {value}", targets.join(" := ")));
+            }
             StmtKind::Call(call) => self.line(format!("do {}", self.expr(call))),
             StmtKind::If { arms, otherwise } => {
                 for arm in &self.arena[arms] {

@@ -30,6 +30,14 @@ pub enum StmtKind {
         /// What is assigned.
         value: Id<Expr>,
     },
+    /// `a := b := value;` (CODESYS)
+    AssignAll {
+        /// As in the text: the last one is assigned first, and gives its value to the one before. At
+        /// least two.
+        targets: List<Id<Expr>>,
+        /// What is assigned.
+        value: Id<Expr>,
+    },
     /// A call whose result nobody takes. Any path is accepted here.
     Call(Id<Expr>),
     /// `IF … ELSIF … ELSE … END_IF`

@@ -70,6 +70,10 @@ impl Arena {
                 function: target,
                 value,
             } => [target, value].into_iter().for_each(visit),
+            StmtKind::AssignAll { targets, value } => {
+                self[targets].iter().copied().for_each(&mut visit);
+                visit(value);
+            }
             StmtKind::Call(expr)
             | StmtKind::Mock(expr)
             | StmtKind::While {
@@ -121,6 +125,7 @@ impl Arena {
             | StmtKind::While { body, .. }
             | StmtKind::Repeat { body, .. } => visit(body),
             StmtKind::Assign { .. }
+            | StmtKind::AssignAll { .. }
             | StmtKind::Call(_)
             | StmtKind::Mock(_)
             | StmtKind::MockFunction { .. }

@@ -119,6 +119,12 @@ pub(crate) struct Analysis<'a> {
     pub warnings: Vec<Diagnostic>,
     /// How deep declarations are being resolved.
     pub depth: u32,
+    /// How many declarations of types are being resolved.
+    pub declaring: u32,
+    /// What stands for declared types in references to them, where those were met first.
+    pub forward: FxHashMap<TypeDeclId, TypeId>,
+    /// Constants that were looked at before their turn, by where they are declared.
+    pub ahead: FxHashSet<(PouId, TextRange)>,
     /// The first unit that is not of the library.
     pub first_user_unit: u32,
     /// How many of `pous` were there before any body was looked at.

@@ -78,7 +78,16 @@ pub fn intern_words(names: &mut Names) {
     testing::intern_words(names);
 }
 
-const WORDS: [&str; 6] = ["EN", "ENO", "INTERVAL", "SINGLE", "PRIORITY", "BIT"];
+const WORDS: [&str; 9] = [
+    "EN", "ENO", "INTERVAL", "SINGLE", "PRIORITY", "BIT", "__XINT", "__UXINT", "__XWORD",
+];
+
+/// Types of CODESYS that are as wide as an address, which has 64 bits here.
+const WIDE: [(&str, El); 3] = [
+    ("__XINT", El::Lint),
+    ("__UXINT", El::Ulint),
+    ("__XWORD", El::Lword),
+];
 
 /// Decides what the program of some files means. The library's files are trees like others; what
 /// of them is not used is not looked at. Constants that are more than folding are computed by
@@ -201,6 +210,7 @@ impl<'a> Analysis<'a> {
                 initial: None,
             });
             elementary_names.insert(word("BIT"), bit);
+            elementary_names.extend(WIDE.map(|(name, el)| (word(name), TypeId::of(el))));
         }
         let global = Namespace::default();
         Self {
@@ -247,6 +257,9 @@ impl<'a> Analysis<'a> {
             found: Diagnostics::new(),
             warnings: Vec::new(),
             depth: 0,
+            declaring: 0,
+            forward: FxHashMap::default(),
+            ahead: rustc_hash::FxHashSet::default(),
             first_user_unit: 0,
             declared_pous: 0,
         }

@@ -245,6 +245,13 @@ impl Types {
         self.intern(TypeKind::Alias(self.aliases.len() as u32 - 1))
     }
 
+    /// Says what an alias stands for that was added before that was known.
+    pub fn settle_alias(&mut self, alias: TypeId, base: TypeId) {
+        if let TypeKind::Alias(index) = *self.kind(alias) {
+            self.aliases[index as usize].base = base;
+        }
+    }
+
     /// The type behind aliases.
     pub fn strip(&self, mut id: TypeId) -> TypeId {
         while let TypeKind::Alias(alias) = self.kind(id) {

@@ -1,6 +1,7 @@
 //! Integers and reals.
 
 use super::Build;
+use crate::st::Dialect;
 use iecc_ast::rung::Radix;
 use iecc_ast::st::{Expr, ExprKind, Id, IntLiteral, Literal};
 use iecc_ast::{RealText, underlines_are_between_digits};
@@ -70,10 +71,10 @@ impl Build<'_, '_> {
         }
     }
 
-    /// `1.5`, `1.5E-3`; `1E5` gets a message.
+    /// `1.5`, `1.5E-3`; `1E5` gets a message, but in CODESYS.
     pub(crate) fn real(&mut self, start: u32, end: u32) -> Id<Expr> {
         let text = self.text(start, end);
-        if !text.contains('.') {
+        if !text.contains('.') && self.tokens.dialect != Dialect::Codesys {
             self.no_fraction(text, start, end);
         } else if !underlines_are_between_digits(text) {
             self.wrong_digits(WrongDigits::Underline, 10, start, end);

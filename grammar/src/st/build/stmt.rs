@@ -50,6 +50,29 @@ impl Build<'_, '_> {
         self.statement(start, kind, end)
     }
 
+    /// `target := … := value;`, the further targets in reverse.
+    pub(crate) fn assignments(
+        &mut self,
+        start: u32,
+        target: Id<Expr>,
+        (mut targets, value): (Vec<Id<Expr>>, Id<Expr>),
+        end: u32,
+    ) -> Id<Stmt> {
+        targets.push(target);
+        targets.reverse();
+        let kind = match targets.iter().find(|target| !self.is_path(**target)) {
+            None => StmtKind::AssignAll {
+                targets: self.arena.list(targets),
+                value,
+            },
+            Some(&wrong) => {
+                self.no_target(wrong);
+                StmtKind::Error
+            }
+        };
+        self.statement(start, kind, end)
+    }
+
     /// Whether an expression is a path rather than something with operators. What it leads to is
     /// not known here.
     fn is_path(&self, expr: Id<Expr>) -> bool {

@@ -181,7 +181,7 @@ impl Build<'_, '_> {
         location: Option<Id<Expr>>,
         ty: Id<TypeSpec>,
         edge: Option<Edge>,
-        initial: Option<Id<Expr>>,
+        initial: Option<(Id<Expr>, bool)>,
         end: u32,
     ) -> VarDecl {
         VarDecl {
@@ -189,7 +189,8 @@ impl Build<'_, '_> {
             location,
             ty,
             edge,
-            initial,
+            initial: initial.map(|(value, _)| value),
+            bound: initial.is_some_and(|(_, bound)| bound),
             range: self.range(start, end),
         }
     }

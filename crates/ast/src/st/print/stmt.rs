@@ -21,6 +21,13 @@ impl Printer<'_> {
                 self.format(format_args!(" {} ", op.as_str()));
                 self.expr(value);
             }
+            StmtKind::AssignAll { targets, value } => {
+                for &target in &self.arena[targets] {
+                    self.expr(target);
+                    self.format(format_args!(" := "));
+                }
+                self.expr(value);
+            }
             StmtKind::Call(call) => self.expr(call),
             StmtKind::If { arms, otherwise } => {
                 for (index, &arm) in self.arena[arms].iter().enumerate() {

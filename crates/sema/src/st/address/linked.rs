@@ -17,7 +17,8 @@ struct Linked {
     place: Place,
     ty: TypeId,
     area: Area,
-    /// Whether it is in an array, of which one element stands for all.
+    /// Whether it is in an array of which one element stands for all: one that is too large, or outside of
+    /// CODESYS.
     repeated: bool,
 }
 
@@ -33,6 +34,14 @@ enum Of {
     Type(TypeId),
     /// An instance, or the part of one that is a base.
     Instance(PouId),
+}
+
+/// The most elements of an array that are linked each for itself.
+const MAX_LINKED: u64 = 4096;
+
+fn elements(dimensions: &[(i64, i64)]) -> u64 {
+    let extents = dimensions.iter().map(|(low, high)| low.abs_diff(*high) + 1);
+    extents.fold(1, u64::saturating_mul)
 }
 
 impl Analysis<'_> {
@@ -140,12 +149,21 @@ impl Analysis<'_> {
                 }
             }
             TypeKind::Instance(pou) => self.parts_of_instance(*pou, part, stack, found),
-            TypeKind::Array { element, .. } => stack.push(Part {
-                of: Of::Type(*element),
-                place: part.place.clone().step(Step::Index(0)),
-                path: format!("{}[]", part.path),
-                repeated: true,
-            }),
+            TypeKind::Array {
+                element,
+                dimensions,
+            } => {
+                if self.options.codesys && elements(dimensions) <= MAX_LINKED {
+                    self.each_element(*element, dimensions, part, stack);
+                } else {
+                    stack.push(Part {
+                        of: Of::Type(*element),
+                        place: part.place.clone().step(Step::Index(0)),
+                        path: format!("{}[]", part.path),
+                        repeated: true,
+                    });
+                }
+            }
             TypeKind::Error
             | TypeKind::Nothing
             | TypeKind::UntypedInt
@@ -160,6 +178,37 @@ impl Analysis<'_> {
             | TypeKind::Reference(..)
             | TypeKind::Alias(_) => {}
         }
+    }
+
+    /// Every element of an array of something that has parts.
+    fn each_element(
+        &self,
+        element: TypeId,
+        dimensions: &[(i64, i64)],
+        part: &Part,
+        stack: &mut Vec<Part>,
+    ) {
+        if self.types.is_scalar(element) {
+            return;
+        }
+        let mut parts = vec![(part.place.clone(), part.path.clone())];
+        for (low, high) in dimensions {
+            let each = |(place, path): &(Place, String)| {
+                let (place, path) = (place.clone(), path.clone());
+                let indexes = (0..).zip(*low..=*high);
+                indexes.map(move |(index, number)| {
+                    let place = place.clone().step(Step::Index(index));
+                    (place, format!("{path}[{number}]"))
+                })
+            };
+            parts = parts.iter().flat_map(each).collect();
+        }
+        stack.extend(parts.into_iter().map(|(place, path)| Part {
+            of: Of::Type(element),
+            place,
+            path,
+            repeated: part.repeated,
+        }));
     }
 
     fn look(

@@ -181,11 +181,31 @@ impl Body<'_, '_> {
                 | Const::Text(_)
                 | Const::Null => value.clone(),
             }),
+            (Some(a), Some(b)) if self.an.options.codesys && self.counts(a) && self.counts(b) => {
+                // A constant that fits loses nothing.
+                self.fitting_constant(from, value, b, to)
+            }
             _ => {
                 self.mismatch(from, to);
                 None
             }
         }
+    }
+
+    fn fitting_constant(
+        &mut self,
+        from: &Operand,
+        value: &Const,
+        el: El,
+        to: TypeId,
+    ) -> Option<Const> {
+        let (low, high) = el.range();
+        let fits = |number: i128| (low..=high).contains(&number);
+        if value.as_int().is_some_and(fits) {
+            return Some(value.clone());
+        }
+        self.mismatch(from, to);
+        None
     }
 
     /// A whole number literal in an elementary type.

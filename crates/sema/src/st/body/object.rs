@@ -174,7 +174,10 @@ impl Body<'_, '_> {
         member: st::Ident,
         range: TextRange,
     ) -> Operand {
-        let Some((of, index)) = self.an.instance_var(pou, member.name) else {
+        let own = self.an.instance_var(pou, member.name);
+        let second = || self.an.parameter_alias(pou, member.name);
+        let found = own.or_else(|| self.an.instance_var(pou, second()?));
+        let Some((of, index)) = found else {
             return self.no_instance_member(pou, member);
         };
         let var = self.an.pou(of).vars[index].clone();

@@ -4,7 +4,7 @@ use crate::st::analysis::Analysis;
 use crate::st::signature::UnitId;
 use iecc_ast::st::{
     AssignOp, BinaryOp, Expr, ExprKind, Member, Stmt, StmtKind, TypeDecl, TypeKind, TypeSpec, Unit,
-    UnitKind, VarSection,
+    UnitKind, VarDecl, VarSection,
 };
 use iecc_ast::st::{ModifierKind, PouKind, SectionKind};
 use iecc_diag::{Code, Diagnostic};
@@ -13,14 +13,27 @@ use iecc_source::TextRange;
 impl Analysis<'_> {
     /// Looks through the nodes of every unit of the user.
     pub(crate) fn check_dialect(&mut self) {
-        if self.options.codesys {
-            return;
-        }
         for index in self.first_user_unit..self.units.len() as u32 {
             let id = UnitId(index);
+            if self.options.codesys {
+                self.check_bound(id);
+                continue;
+            }
             for (range, what) in foreign_forms(self.unit(id)) {
                 self.foreign(id, range, what);
             }
+        }
+    }
+
+    /// `REF=` in a declaration is for what is written REFERENCE TO.
+    fn check_bound(&mut self, id: UnitId) {
+        let unit = self.unit(id);
+        let mut wrong = unit.arena.all::<VarDecl>().to_vec();
+        wrong.retain(|decl| decl.bound && !is_reference(unit, decl));
+        for decl in wrong {
+            let span = self.span(id, unit.arena[decl.ty].range);
+            let message = "`REF=` gives an initial value to a REFERENCE only";
+            self.error(Code::E2034, span, message);
         }
     }
 
@@ -77,6 +90,9 @@ fn foreign_code(unit: &Unit, found: &mut Vec<(TextRange, &'static str)>) {
         {
             found.push((stmt.range, op.as_str()));
         }
+        if let StmtKind::AssignAll { .. } = stmt.kind {
+            found.push((stmt.range, "an assignment to several variables at once"));
+        }
     }
 }
 
@@ -104,11 +120,21 @@ fn foreign_types(unit: &Unit, found: &mut Vec<(TextRange, &'static str)>) {
         };
         found.push((ty.range, what));
     }
+    for decl in arena.all::<VarDecl>() {
+        if decl.bound && !is_reference(unit, decl) {
+            found.push((decl.range, "REF="));
+        }
+    }
     for decl in arena.all::<TypeDecl>() {
         if decl.extends.is_some() {
             found.push((decl.range, "EXTENDS of a structure"));
         }
     }
+}
+
+/// Whether a variable is written as a REFERENCE.
+pub(crate) fn is_reference(unit: &Unit, decl: &VarDecl) -> bool {
+    matches!(unit.arena[decl.ty].kind, TypeKind::ReferenceTo(_))
 }
 
 fn foreign_sections(unit: &Unit, found: &mut Vec<(TextRange, &'static str)>) {

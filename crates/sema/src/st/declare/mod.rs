@@ -8,6 +8,7 @@ mod namespaces;
 mod pragmas;
 mod spelling;
 
+pub(crate) use dialect::is_reference;
 pub use hidden::intern_hidden;
 pub(crate) use hidden::{Accessors, Property};
 pub(crate) use pragmas::{PACK_MODE, QUALIFIED_ONLY, STRICT};

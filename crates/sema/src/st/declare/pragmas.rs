@@ -17,7 +17,7 @@ pub(crate) const STRICT: &str = "strict";
 pub(crate) const PACK_MODE: &str = "pack_mode";
 
 /// Attributes that change what happens at run time, and why they are refused.
-const REFUSED: [(&str, &str); 13] = [
+const REFUSED: [(&str, &str); 12] = [
     (
         "call_after_init",
         "methods are not called before the first scan",
@@ -49,7 +49,6 @@ const REFUSED: [(&str, &str); 13] = [
         "is_connected",
         "a block does not know what it is called with",
     ),
-    ("reflection", "there is no type information at run time"),
     (
         "io_function_block",
         "blocks are not run by the I/O configuration",
@@ -58,7 +57,7 @@ const REFUSED: [(&str, &str); 13] = [
 ];
 
 /// Attributes about tools: symbols, views, checks, links. They mean nothing to the program.
-const HARMLESS: [&str; 42] = [
+const HARMLESS: [&str; 43] = [
     "analysis",
     "analysis:report-multiple-instance-calls",
     "conditionalshow",
@@ -95,6 +94,8 @@ const HARMLESS: [&str; 42] = [
     "pin_presentation_order_outputs",
     "pingroup",
     "processvalue",
+    // It lets 'instance-path' work, which is refused.
+    "reflection",
     "subsequent",
     "symbol",
     "to_string",
@@ -119,8 +120,9 @@ const HARMLESS_WORDS: [&str; 12] = [
     "nonpersistent",
 ];
 
-/// Words of compilation under a condition.
-const CONDITIONAL: [&str; 6] = ["if", "elsif", "else", "end_if", "define", "undefine"];
+/// Words of compilation under a condition. Those that follow IF get no message of their own.
+const CONDITIONAL: [&str; 3] = ["if", "define", "undefine"];
+const CONDITIONAL_REST: [&str; 3] = ["elsif", "else", "end_if"];
 
 /// The name of an attribute.
 fn attribute(pragma: &Pragma) -> Option<&str> {
@@ -212,7 +214,7 @@ impl Analysis<'_> {
         } else if word.eq_ignore_ascii_case("error") {
             let message = format!("the source reports an error: {}", text.trim());
             self.error(Code::E8002, span, message);
-        } else if !HARMLESS_WORDS.iter().any(is) {
+        } else if !HARMLESS_WORDS.iter().chain(&CONDITIONAL_REST).any(is) {
             self.meaningless(span, format!("nothing is known of pragma `{word}`"));
         }
     }

@@ -80,6 +80,11 @@ impl Walk<'_> {
                 self.read(value);
                 self.assign(target);
             }
+            StmtKind::AssignAll { targets, value } => {
+                self.read(value);
+                let targets = &self.arena[targets];
+                targets.iter().for_each(|target| self.assign(*target));
+            }
             StmtKind::For {
                 variable,
                 from,
@@ -134,6 +139,11 @@ impl Walk<'_> {
         let mut stmts = Vec::new();
         arena.each_stmt_in(body, &mut |stmt| stmts.push(stmt));
         for stmt in stmts {
+            if let StmtKind::AssignAll { targets, .. } = arena[stmt].kind {
+                arena[targets]
+                    .iter()
+                    .for_each(|target| self.assign(*target));
+            }
             if let StmtKind::Assign { target, .. }
             | StmtKind::For {
                 variable: target, ..

@@ -72,6 +72,7 @@ fn statement_leaves(
             false
         }
         StmtKind::Assign { .. }
+        | StmtKind::AssignAll { .. }
         | StmtKind::Call(_)
         | StmtKind::Mock(_)
         | StmtKind::MockFunction { .. }
@@ -94,6 +95,7 @@ pub(in crate::st) fn can_leave(arena: &st::Arena, block: st::Block, inner: bool)
         | StmtKind::While { body, .. }
         | StmtKind::Repeat { body, .. } => can_leave(arena, body, true),
         StmtKind::Assign { .. }
+        | StmtKind::AssignAll { .. }
         | StmtKind::Call(_)
         | StmtKind::Mock(_)
         | StmtKind::MockFunction { .. }

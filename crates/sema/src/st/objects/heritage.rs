@@ -12,7 +12,7 @@
 use crate::st::analysis::Analysis;
 use crate::st::signature::{Def, NamespaceId, Part, PouId, UnitId};
 use iecc_ast::Symbol;
-use iecc_ast::st::{self, ModifierKind, PouKind, UnitKind};
+use iecc_ast::st::{self, ExprKind, ModifierKind, PouKind, UnitKind};
 use iecc_diag::{Code, Diagnostic};
 use iecc_source::Span;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -99,6 +99,9 @@ impl Analysis<'_> {
         let mut found = Vec::new();
         for &path in &unit.arena[paths] {
             let span = unit.span(unit.arena[path].range);
+            if self.is_query_interface(unit_id, path) {
+                continue;
+            }
             match self.found(unit_id, namespace, path).as_deref() {
                 Some([Def::Pou(base), ..]) => found.push((*base, span)),
                 Some([]) => {
@@ -116,6 +119,20 @@ impl Analysis<'_> {
             }
         }
         found
+    }
+
+    /// `__SYSTEM.IQueryInterface` of CODESYS, which says that `__QUERYINTERFACE` may ask: every interface
+    /// may be asked here, and it has no methods for users.
+    fn is_query_interface(&self, unit: UnitId, path: st::Id<st::Expr>) -> bool {
+        let unit = self.unit(unit);
+        let ExprKind::Member { base, member } = unit.arena[path].kind else {
+            return false;
+        };
+        let ExprKind::Name(base) = unit.arena[base].kind else {
+            return false;
+        };
+        let is = |name, word: &str| self.text(name).eq_ignore_ascii_case(word);
+        self.options.codesys && is(base, "__SYSTEM") && is(member.name, "IQueryInterface")
     }
 
     fn may_extend(&mut self, id: PouId, base: PouId, span: Span) -> bool {

@@ -63,6 +63,7 @@ impl Analysis<'_> {
             Resolution::Untouched => {}
         }
         self.type_decls[id.index()].state = Resolution::InProgress;
+        self.declaring += 1;
         let scope = TypeScope {
             unit,
             namespace,
@@ -70,8 +71,44 @@ impl Analysis<'_> {
             pou: None,
         };
         let ty = self.named_type(scope, &decl);
+        self.declaring -= 1;
         self.type_decls[id.index()].state = Resolution::Done(ty);
+        if let Some(alias) = self.forward.get(&id) {
+            self.types.settle_alias(*alias, ty);
+        }
         ty
+    }
+
+    /// What a reference in a declared type refers to, if that is declared and not known yet. A structure may
+    /// so refer to others of its kind. All declarations are known before any reference is followed.
+    fn forward_type(
+        &mut self,
+        scope: TypeScope<'_>,
+        target: st::Id<st::TypeSpec>,
+    ) -> Option<TypeId> {
+        let Written::Named(path) = self.unit(scope.unit).arena[target].kind else {
+            return None;
+        };
+        let [Def::Type(id)] = *self.path(scope.unit, scope.namespace, path)? else {
+            return None;
+        };
+        let decl = self.type_decl(id);
+        let known = matches!(decl.state, Resolution::Done(_));
+        if known || self.declaring == 0 {
+            return None;
+        }
+        let name = decl.decl.name.name;
+        if let Some(known) = self.forward.get(&id) {
+            return Some(*known);
+        }
+        let base = TypeId::ERROR;
+        let alias = self.types.add_alias(AliasDef {
+            name,
+            base,
+            initial: None,
+        });
+        self.forward.insert(id, alias);
+        Some(alias)
     }
 
     fn named_type(&mut self, scope: TypeScope<'_>, decl: &st::TypeDecl) -> TypeId {
@@ -171,7 +208,10 @@ impl Analysis<'_> {
         kind: ReferenceKind,
         target: st::Id<st::TypeSpec>,
     ) -> TypeId {
-        let target = self.written_type(scope, target, None);
+        let target = match self.forward_type(scope, target) {
+            Some(forward) => forward,
+            None => self.written_type(scope, target, None),
+        };
         if target == TypeId::ERROR {
             return target;
         }
@@ -237,6 +277,12 @@ impl Analysis<'_> {
         };
         if name == self.words.bit && !self.options.codesys {
             self.foreign(scope.unit, written.range, "BIT");
+            return;
+        }
+        if self.options.codesys && self.text(name).eq_ignore_ascii_case("PVOID") {
+            let message = "PVOID is not compiled: a pointer refers to variables of one type";
+            let note = "POINTER TO and the type of what it refers to";
+            self.report(Diagnostic::new(Code::E8002, span, message).note(note));
             return;
         }
         let message = format!("no type is named `{}`", self.text(name));

@@ -161,51 +161,99 @@ impl Analysis<'_> {
             return;
         }
         for decl in &unit.arena[variables] {
-            let owned = self.pou_scope(id);
-            let names = &unit.arena[decl.names];
-            // Each name has the type of its own argument.
-            let bound = |ident: &st::Ident| owned.open_type(ident.name);
-            let mut declared = match names.iter().all(|ident| bound(ident).is_some()) {
-                true => TypeId::ERROR,
-                false => self.variable_type(owned.as_scope(), decl),
+            if !self.ahead.contains(&(id, decl.range)) {
+                self.variable(id, kind, section.kind, constant, access, decl);
+            }
+        }
+    }
+
+    /// Looks at a constant of a unit before its turn, because something names it that stands before it.
+    pub(crate) fn constant_ahead(&mut self, id: PouId, name: iecc_ast::Symbol) {
+        if self.pou(id).state != State::InProgress || self.depth >= MAX_RESOLUTION_DEPTH {
+            return;
+        }
+        let Some(written) = self.written_pou(id) else {
+            return;
+        };
+        let arena = &self.unit(self.pou(id).unit).arena;
+        for section in &arena[written.sections] {
+            let mut modifiers = arena[section.modifiers].iter();
+            let constant = modifiers.any(|m| m.kind == ModifierKind::Constant);
+            let (SectionKind::Var, true, Declarations::Variables(variables)) =
+                (section.kind, constant, section.declarations)
+            else {
+                continue;
             };
-            if decl.edge.is_some() && !self.edge_fits(unit_id, kind, section.kind, decl, declared) {
-                declared = TypeId::ERROR;
+            let named = |decl: &&st::VarDecl| arena[decl.names].iter().any(|one| one.name == name);
+            let Some(decl) = arena[variables].iter().find(named) else {
+                continue;
+            };
+            if self.ahead.insert((id, decl.range)) {
+                self.depth += 1;
+                self.variable(id, written.kind, section.kind, constant, None, decl);
+                self.depth -= 1;
             }
-            for ident in names {
-                let ty = bound(ident).unwrap_or(declared);
-                let initial = decl.initial.map(|expr| Initial {
-                    unit: unit_id,
-                    expr,
-                });
-                let mut var = Var {
-                    name: ident.name,
-                    range: ident.range,
-                    section: section.kind,
-                    ty,
-                    initial,
-                    constant,
-                    edge: decl.edge,
-                    access,
-                    storage: Storage::Local,
-                    partly: None,
-                };
-                if let Some(location) = decl.location
-                    && section.kind != SectionKind::Global
-                {
-                    self.located(id, kind, &mut var, location);
-                }
-                var.ty = self.check_instance(id, section.kind, &var);
-                if section.kind == SectionKind::Global {
-                    self.own_global(id, &mut var);
-                } else if section.kind == SectionKind::External {
-                    self.external(id, &mut var);
-                } else if constant && !is_passed(section.kind) {
-                    self.fold_constant(id, &mut var);
-                }
-                self.check_place_of_instance(id, &var);
-                self.add_var(id, var);
+            return;
+        }
+    }
+
+    /// The variables of one declaration.
+    fn variable(
+        &mut self,
+        id: PouId,
+        kind: PouKind,
+        section: SectionKind,
+        constant: bool,
+        access: Option<ModifierKind>,
+        decl: &st::VarDecl,
+    ) {
+        let unit_id = self.pou(id).unit;
+        let unit = self.unit(unit_id);
+        let owned = self.pou_scope(id);
+        let names = &unit.arena[decl.names];
+        // Each name has the type of its own argument.
+        let bound = |ident: &st::Ident| owned.open_type(ident.name);
+        let mut declared = match names.iter().all(|ident| bound(ident).is_some()) {
+            true => TypeId::ERROR,
+            false => self.variable_type(owned.as_scope(), decl),
+        };
+        if decl.edge.is_some() && !self.edge_fits(unit_id, kind, section, decl, declared) {
+            declared = TypeId::ERROR;
+        }
+        for ident in names {
+            let ty = bound(ident).unwrap_or(declared);
+            let fits = !decl.bound || super::declare::is_reference(unit, decl);
+            let initial = decl.initial.filter(|_| fits).map(|expr| Initial {
+                unit: unit_id,
+                expr,
+            });
+            let mut var = Var {
+                name: ident.name,
+                range: ident.range,
+                section,
+                ty,
+                initial,
+                constant,
+                edge: decl.edge,
+                access,
+                storage: Storage::Local,
+                partly: None,
+            };
+            if let Some(location) = decl.location
+                && section != SectionKind::Global
+            {
+                self.located(id, kind, &mut var, location);
             }
+            var.ty = self.check_instance(id, section, &var);
+            if section == SectionKind::Global {
+                self.own_global(id, &mut var);
+            } else if section == SectionKind::External {
+                self.external(id, &mut var);
+            } else if constant && !is_passed(section) {
+                self.fold_constant(id, &mut var);
+            }
+            self.check_place_of_instance(id, &var);
+            self.add_var(id, var);
         }
     }
 

@@ -74,7 +74,7 @@ impl Analysis<'_> {
         }
     }
 
-    /// The parameter of a library unit that has this as its second name.
+    /// The parameter of a library unit that has this as its second name, in CODESYS or anywhere.
     pub(crate) fn parameter_alias(&self, pou: PouId, name: Symbol) -> Option<Symbol> {
         let pou = self.pou(pou);
         if !self.is_library(pou.unit) {
@@ -82,7 +82,9 @@ impl Analysis<'_> {
         }
         let quoted = format!("'{}'", self.text(name).to_ascii_uppercase());
         let pragmas = self.unit(pou.unit).pragmas.iter();
-        let mut aliases = pragmas.filter(|pragma| pragma.text.contains("alias"));
+        let heeded = |text: &str| self.options.codesys || !text.ends_with("of codesys");
+        let mut aliases = pragmas
+            .filter(|pragma| pragma.text.contains("alias") && heeded(pragma.text.trim_end()));
         let pragma = aliases.find(|pragma| pragma.text.contains(&quoted))?;
         let behind = pou
             .vars

@@ -89,8 +89,12 @@ impl Body<'_, '_> {
         let types = &self.an.types;
         match (untyped(left.ty), untyped(right.ty)) {
             (true, true) => Some(TypeId::UNTYPED_REAL),
-            (true, false) => types.elementary(right.ty).map(TypeId::of),
-            (false, true) => types.elementary(left.ty).map(TypeId::of),
+            (true, false) => types
+                .elementary(right.ty)
+                .map(|_| self.literal_beside(left, right, None)),
+            (false, true) => types
+                .elementary(left.ty)
+                .map(|_| self.literal_beside(right, left, None)),
             (false, false) => {
                 let (a, b) = (types.elementary(left.ty)?, types.elementary(right.ty)?);
                 self.common(a, b).map(TypeId::of)

@@ -425,8 +425,8 @@ impl Body<'_, '_> {
                 let wanted = wanted.and_then(|ty| self.an.types.elementary(ty));
                 Some(wanted.map_or(own, TypeId::of))
             }
-            (true, false) => Some(self.literal_beside(left, right)),
-            (false, true) => Some(self.literal_beside(right, left)),
+            (true, false) => Some(self.literal_beside(left, right, want)),
+            (false, true) => Some(self.literal_beside(right, left, want)),
             (false, false) => {
                 let a = self.an.types.elementary(left.ty)?;
                 let b = self.an.types.elementary(right.ty)?;
@@ -435,11 +435,26 @@ impl Body<'_, '_> {
         }
     }
 
-    /// The type of a literal and a typed operand: that of the operand, but a fraction beside an
-    /// integer stays what it is, so that the mistake is reported at the literal.
-    fn literal_beside(&self, _literal: &Operand, typed: &Operand) -> TypeId {
-        let el = self.an.types.elementary(typed.ty);
-        el.map_or(typed.ty, TypeId::of)
+    /// The type of a literal and a typed operand: that of the operand, but a fraction makes an integer the
+    /// real number that holds it, or the one that is wanted.
+    pub(super) fn literal_beside(
+        &self,
+        literal: &Operand,
+        typed: &Operand,
+        want: Option<TypeId>,
+    ) -> TypeId {
+        let Some(el) = self.an.types.elementary(typed.ty) else {
+            return typed.ty;
+        };
+        if literal.ty != TypeId::UNTYPED_REAL || !el.is_int() {
+            return TypeId::of(el);
+        }
+        let wanted = want.and_then(|ty| self.an.types.elementary(ty));
+        let real = match wanted {
+            Some(El::Lreal) => Some(El::Lreal),
+            Some(_) | None => el.common(El::Real),
+        };
+        TypeId::of(real.unwrap_or(el))
     }
 
     /// A number by value in another storage.

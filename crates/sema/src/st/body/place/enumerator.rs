@@ -3,7 +3,7 @@
 use crate::st::body::{Body, Operand};
 use crate::st::constant::Const;
 use crate::st::types::TypeId;
-use iecc_ast::Symbol;
+use iecc_ast::{Symbol, st};
 use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::TextRange;
 
@@ -45,6 +45,19 @@ impl Body<'_, '_> {
     pub(super) fn is_qualified(&self, ty: TypeId) -> bool {
         let enumeration = self.an.types.enumeration(ty);
         enumeration.is_some_and(|def| def.qualified)
+    }
+
+    /// Whether a place is in the declaration of an enumeration, whose initial value needs no name before it.
+    pub(super) fn names_itself(&self, ty: TypeId, range: TextRange) -> bool {
+        let Some(def) = self.an.types.enumeration(ty) else {
+            return false;
+        };
+        let unit = self.an.unit(self.unit);
+        let mut decls = unit.arena.all::<st::TypeDecl>().iter();
+        decls.any(|decl| {
+            let around = decl.range.start <= range.start && range.end <= decl.range.end;
+            around && unit.span(unit.arena[decl.ty].range) == def.span
+        })
     }
 
     pub(super) fn ambiguous_enumerator(

@@ -1,6 +1,6 @@
 //! `base.member`: of structures, instances, namespaces and enumerations.
 
-use super::rights::{outside_rights, own_rights};
+use super::rights::outside_rights;
 use crate::hir::code::{PathStep, Root};
 use crate::st::body::property::Target;
 use crate::st::body::{Body, Operand, OperandKind, Rights};
@@ -173,7 +173,7 @@ impl Body<'_, '_> {
                 let rights = if outside {
                     outside_rights(var)
                 } else {
-                    own_rights(var)
+                    self.own_rights(var)
                 };
                 self.place_operand(root, steps, rights, var.ty, range)
             }
@@ -184,7 +184,7 @@ impl Body<'_, '_> {
             Storage::Located(address) => {
                 let rights = match address.area {
                     st::Area::Input => Rights::OwnInput,
-                    st::Area::Output | st::Area::Memory => own_rights(var),
+                    st::Area::Output | st::Area::Memory => self.own_rights(var),
                 };
                 let address = *address;
                 self.at_address(address, var.ty, rights, range)

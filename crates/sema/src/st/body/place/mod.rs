@@ -14,7 +14,7 @@ pub(crate) use part::{enter_bits, shared_bytes};
 use super::{Body, Operand, OperandKind, Place, Rights};
 use crate::hir::code::{PathStep, Root};
 use crate::st::signature::PouId;
-use crate::st::types::TypeId;
+use crate::st::types::{ReferenceKind, TypeId};
 use iecc_ast::st::{self, ExprKind as Written, PouKind};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
@@ -30,6 +30,9 @@ impl Body<'_, '_> {
             Written::Index { base, indices } => self.index(base, indices, range),
             Written::Part { base, part } => self.part(base, part, range),
             Written::Deref(base) => self.deref(base, range),
+            Written::This if self.wants_pointer(want) => {
+                self.reference_to(id, ReferenceKind::Pointer, range)
+            }
             Written::This => self.this(range),
             Written::Direct(_) => self.direct(id, None, range),
             Written::Super => self.error(Message::E3003, range, "SUPER stands in calls only"),

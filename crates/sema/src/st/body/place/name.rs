@@ -1,7 +1,6 @@
 //! What a name without anything before it stands for: a variable of the unit, an enumerator, a global
 //! variable, a program.
 
-use super::rights::own_rights;
 use crate::hir::code::{LocalId, Root};
 use crate::st::body::{Body, Operand, Rights};
 use crate::st::constant::Const;
@@ -34,7 +33,7 @@ impl Body<'_, '_> {
             return Operand::constant(Const::Int(1), TypeId::BOOL, range);
         }
         if let Some(ty) = want
-            && !self.is_qualified(ty)
+            && (!self.is_qualified(ty) || self.names_itself(ty, range))
             && let Some(operand) = self.find_enumerator(ty, name, range)
         {
             return operand;
@@ -97,6 +96,9 @@ impl Body<'_, '_> {
     /// A variable of the unit, of what it belongs to, or of what that extends.
     fn own_name(&mut self, name: Symbol, range: TextRange) -> Option<Operand> {
         let pou = self.pou?;
+        if !self.an.pou(pou).by_name.contains_key(&name) {
+            self.an.constant_ahead(pou, name);
+        }
         if let Some(index) = self.an.pou(pou).by_name.get(&name).copied() {
             return Some(self.own_variable(pou, index as usize, range));
         }
@@ -121,16 +123,19 @@ impl Body<'_, '_> {
     fn own_variable(&mut self, pou: PouId, index: usize, range: TextRange) -> Operand {
         let var = self.an.pou(pou).vars[index].clone();
         let pou_home = self.an.pou(pou).owner.unwrap_or(pou);
+        if var.ty == TypeId::ERROR {
+            return Operand::error(range);
+        }
         match &var.storage {
             Storage::Local => match self.local_of(index) {
                 Some(local) => {
-                    let rights = own_rights(&var);
+                    let rights = self.own_rights(&var);
                     self.place_operand(Root::Local(local), Vec::new(), rights, var.ty, range)
                 }
                 None => self.not_constant(range),
             },
             Storage::Ref(reference) => {
-                let rights = own_rights(&var);
+                let rights = self.own_rights(&var);
                 self.place_operand(Root::Ref(*reference), Vec::new(), rights, var.ty, range)
             }
             Storage::Field(_) if var.edge.is_some() => match self.local_of(index) {

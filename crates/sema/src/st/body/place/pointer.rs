@@ -156,6 +156,15 @@ impl Body<'_, '_> {
         Operand::value(value, TypeId::BOOL, range)
     }
 
+    /// Whether THIS is the address of the instance: in CODESYS it is a pointer, where one is needed.
+    pub(super) fn wants_pointer(&self, want: Option<TypeId>) -> bool {
+        let pointer = |ty| {
+            let kind = self.an.types.base(ty);
+            matches!(kind, TypeKind::Reference(ReferenceKind::Pointer, _))
+        };
+        self.an.options.codesys && want.is_some_and(pointer)
+    }
+
     /// `p = 0`: a pointer or interface that stands for nothing (CODESYS).
     pub(crate) fn zero_as_null(&self, left: Operand, right: Operand) -> (Operand, Operand) {
         let zero = |operand: &Operand| {

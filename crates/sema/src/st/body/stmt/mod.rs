@@ -2,6 +2,7 @@
 
 mod assign;
 mod case;
+mod chain;
 mod loops;
 
 use crate::hir::code::{Block, Root, StmtKind};
@@ -109,6 +110,10 @@ impl Body<'_, '_> {
         match arena[id].kind {
             Written::Assign { target, op, value } => {
                 self.assign(target, op, value, range);
+                None
+            }
+            Written::AssignAll { targets, value } => {
+                self.assign_all(targets, value, range);
                 None
             }
             Written::Call(call) => {
