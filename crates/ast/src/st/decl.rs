@@ -202,7 +202,35 @@ pub enum SectionKind {
     Instance,
 }
 
+/// Which way values go through a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// To the unit.
+    In,
+    /// From the unit.
+    Out,
+    /// Both ways, in the variable of the caller.
+    InOut,
+}
+
 impl SectionKind {
+    /// Which way values go through its variables at a call; `None` if they are no parameters.
+    pub fn direction(self) -> Option<Direction> {
+        match self {
+            Self::Input => Some(Direction::In),
+            Self::Output => Some(Direction::Out),
+            Self::InOut => Some(Direction::InOut),
+            Self::Var
+            | Self::Temp
+            | Self::External
+            | Self::Global
+            | Self::Access
+            | Self::Config
+            | Self::Static
+            | Self::Instance => None,
+        }
+    }
+
     /// The word.
     pub fn as_str(self) -> &'static str {
         match self {

@@ -33,8 +33,8 @@ pub use config::{
     Resource, Task,
 };
 pub use decl::{
-    Declarations, Dimension, Edge, EnumValue, Modifier, ModifierKind, SectionKind, TypeDecl,
-    TypeKind, TypeSpec, VarDecl, VarSection,
+    Declarations, Dimension, Direction, Edge, EnumValue, Modifier, ModifierKind, SectionKind,
+    TypeDecl, TypeKind, TypeSpec, VarDecl, VarSection,
 };
 pub use dump::dump;
 pub use expr::{

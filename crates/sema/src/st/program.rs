@@ -2,10 +2,10 @@
 
 use super::analysis::Analysis;
 use super::signature::{PouId, Storage, UnitId};
-use super::types::{TypeId, TypeKind};
+use super::types::{Parts, TypeId, TypeKind};
 use crate::hir::code::Code;
 use crate::hir::{self, Body, IoPoint, Place, Step, TagId, Task, Trigger, Type};
-use iecc_ast::st::{self, PouKind, SectionKind, UnitKind};
+use iecc_ast::st::{self, Direction, PouKind, UnitKind};
 use iecc_diag::{Code as Message, Diagnostic, closest};
 use iecc_source::Span;
 
@@ -191,23 +191,15 @@ impl Analysis<'_> {
             };
             let place = Place::whole(tag).step(Step::Field(field));
             let name = self.text(var.name).to_owned();
-            match var.section {
+            match var.section.direction() {
                 // Only its method sees it.
                 _ if name.contains('.') => {}
                 // What sets it is its source; the name is free for another thing.
                 _ if connected.contains(&var.name) => {}
                 _ if var.partly.is_some() => self.hir.names.push((name, place)),
-                SectionKind::Input => self.points(&name, place.clone(), var.ty, true),
-                SectionKind::Output => self.points(&name, place.clone(), var.ty, false),
-                SectionKind::Var
-                | SectionKind::InOut
-                | SectionKind::Temp
-                | SectionKind::External
-                | SectionKind::Global
-                | SectionKind::Access
-                | SectionKind::Config
-                | SectionKind::Static
-                | SectionKind::Instance => self.hir.names.push((name, place)),
+                Some(Direction::In) => self.points(&name, place.clone(), var.ty, true),
+                Some(Direction::Out) => self.points(&name, place.clone(), var.ty, false),
+                Some(Direction::InOut) | None => self.hir.names.push((name, place)),
             }
         }
     }
@@ -227,13 +219,15 @@ impl Analysis<'_> {
             });
             return;
         }
-        match self.types.base(ty).clone() {
-            TypeKind::Array {
+        match self.types.parts(ty) {
+            Parts::Elements {
                 dimensions,
                 element,
-            } => self.array_points(name, place, &dimensions, element, input, String::new()),
-            TypeKind::Struct(index) => {
-                let def = &self.types.structs[index as usize];
+            } => {
+                let dimensions = dimensions.to_vec();
+                self.array_points(name, place, &dimensions, element, input, String::new());
+            }
+            Parts::Members(def) => {
                 if let Some(overlay) = &def.overlay {
                     let last = i64::from(overlay.bytes) - 1;
                     let byte = TypeId::of(super::elementary::El::Byte);
@@ -247,20 +241,7 @@ impl Analysis<'_> {
                     self.points(&name, place, member.ty, input);
                 }
             }
-            TypeKind::Error
-            | TypeKind::Nothing
-            | TypeKind::UntypedInt
-            | TypeKind::UntypedReal
-            | TypeKind::Null
-            | TypeKind::Elementary(_)
-            | TypeKind::Text { .. }
-            | TypeKind::Enum(_)
-            | TypeKind::Subrange { .. }
-            | TypeKind::OpenArray { .. }
-            | TypeKind::Instance(_)
-            | TypeKind::Interface(_)
-            | TypeKind::Reference(..)
-            | TypeKind::Alias(_) => {}
+            Parts::Variables(_) | Parts::None => {}
         }
     }
 

@@ -166,6 +166,24 @@ pub struct Types {
     pub aliases: Vec<AliasDef>,
 }
 
+/// What values of a type are made of.
+#[derive(Debug, Clone, Copy)]
+pub enum Parts<'t> {
+    /// Elements of one type.
+    Elements {
+        /// First and last index of each dimension.
+        dimensions: &'t [(i64, i64)],
+        /// Their type.
+        element: TypeId,
+    },
+    /// Members of a structure.
+    Members(&'t StructDef),
+    /// The variables of a block, class or program.
+    Variables(PouId),
+    /// Nothing that has a type of its own, or nothing that is known before a call.
+    None,
+}
+
 impl TypeId {
     /// The type of what a message has been given for.
     pub const ERROR: Self = Self(0);
@@ -287,6 +305,34 @@ impl Types {
             | TypeKind::Interface(_)
             | TypeKind::Reference(..)
             | TypeKind::Alias(_) => None,
+        }
+    }
+
+    /// What values of a type are made of.
+    pub fn parts(&self, id: TypeId) -> Parts<'_> {
+        match self.base(id) {
+            TypeKind::Array {
+                dimensions,
+                element,
+            } => Parts::Elements {
+                dimensions,
+                element: *element,
+            },
+            TypeKind::Struct(index) => Parts::Members(&self.structs[*index as usize]),
+            TypeKind::Instance(of) => Parts::Variables(*of),
+            TypeKind::Error
+            | TypeKind::Nothing
+            | TypeKind::UntypedInt
+            | TypeKind::UntypedReal
+            | TypeKind::Null
+            | TypeKind::Elementary(_)
+            | TypeKind::Text { .. }
+            | TypeKind::Enum(_)
+            | TypeKind::Subrange { .. }
+            | TypeKind::OpenArray { .. }
+            | TypeKind::Interface(_)
+            | TypeKind::Reference(..)
+            | TypeKind::Alias(_) => Parts::None,
         }
     }
 

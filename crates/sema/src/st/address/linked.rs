@@ -6,7 +6,7 @@ use crate::hir::{Place, Step, TagId};
 use crate::st::analysis::Analysis;
 use crate::st::objects::InstancePart;
 use crate::st::signature::{Global, PouId, Spot, State};
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{Parts, TypeId};
 use iecc_ast::Symbol;
 use iecc_ast::st::Area;
 use iecc_diag::Code;
@@ -140,43 +140,30 @@ impl Analysis<'_> {
         stack: &mut Vec<Part>,
         found: &mut Vec<Linked>,
     ) {
-        match self.types.base(ty) {
-            TypeKind::Struct(index) => {
-                let members = &self.types.structs[*index as usize].members;
-                for (field, member) in (0..).zip(members) {
+        match self.types.parts(ty) {
+            Parts::Members(def) => {
+                for (field, member) in (0..).zip(&def.members) {
                     let member = (member.name, field, member.partly, member.ty);
                     self.look(part, member, stack, found);
                 }
             }
-            TypeKind::Instance(pou) => self.parts_of_instance(*pou, part, stack, found),
-            TypeKind::Array {
+            Parts::Variables(pou) => self.parts_of_instance(pou, part, stack, found),
+            Parts::Elements {
                 element,
                 dimensions,
             } => {
                 if self.options.codesys && elements(dimensions) <= MAX_LINKED {
-                    self.each_element(*element, dimensions, part, stack);
+                    self.each_element(element, dimensions, part, stack);
                 } else {
                     stack.push(Part {
-                        of: Of::Type(*element),
+                        of: Of::Type(element),
                         place: part.place.clone().step(Step::Index(0)),
                         path: format!("{}[]", part.path),
                         repeated: true,
                     });
                 }
             }
-            TypeKind::Error
-            | TypeKind::Nothing
-            | TypeKind::UntypedInt
-            | TypeKind::UntypedReal
-            | TypeKind::Null
-            | TypeKind::Elementary(_)
-            | TypeKind::Text { .. }
-            | TypeKind::Enum(_)
-            | TypeKind::Subrange { .. }
-            | TypeKind::OpenArray { .. }
-            | TypeKind::Interface(_)
-            | TypeKind::Reference(..)
-            | TypeKind::Alias(_) => {}
+            Parts::None => {}
         }
     }
 

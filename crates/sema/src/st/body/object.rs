@@ -208,10 +208,7 @@ impl Body<'_, '_> {
     }
 
     fn variable_access(&self, var: &Var) -> Access {
-        let passed = matches!(
-            var.section,
-            SectionKind::Input | SectionKind::Output | SectionKind::InOut
-        );
+        let passed = var.section.direction().is_some();
         let default = if passed || self.an.options.codesys {
             Access::Public
         } else {

@@ -5,7 +5,7 @@ use crate::hir::{Place, Step};
 use crate::st::address::Address;
 use crate::st::analysis::Analysis;
 use crate::st::signature::{Def, PouId, Spot, Storage, UnitId};
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{Parts, TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ExprKind};
 use iecc_diag::Code;
@@ -165,9 +165,8 @@ impl Analysis<'_> {
 
     /// The member or variable of something.
     pub(crate) fn path_member(&mut self, at: Found, name: Symbol) -> Option<Found> {
-        match self.types.base(at.ty).clone() {
-            TypeKind::Struct(index) => {
-                let def = &self.types.structs[index as usize];
+        match self.types.parts(at.ty) {
+            Parts::Members(def) => {
                 let position = *def.by_name.get(&name)?;
                 if def.overlay.is_some() {
                     return None;
@@ -179,21 +178,8 @@ impl Analysis<'_> {
                     partly: member.partly.is_some(),
                 })
             }
-            TypeKind::Instance(pou) => self.path_variable(at.place, pou, name),
-            TypeKind::Error
-            | TypeKind::Nothing
-            | TypeKind::UntypedInt
-            | TypeKind::UntypedReal
-            | TypeKind::Null
-            | TypeKind::Elementary(_)
-            | TypeKind::Text { .. }
-            | TypeKind::Enum(_)
-            | TypeKind::Subrange { .. }
-            | TypeKind::Array { .. }
-            | TypeKind::OpenArray { .. }
-            | TypeKind::Interface(_)
-            | TypeKind::Reference(..)
-            | TypeKind::Alias(_) => None,
+            Parts::Variables(pou) => self.path_variable(at.place, pou, name),
+            Parts::Elements { .. } | Parts::None => None,
         }
     }
 

@@ -4,7 +4,7 @@ use crate::hir::{InitId, code::Init};
 use crate::st::analysis::Analysis;
 use crate::st::resolve::TypeScope;
 use crate::st::signature::{PouId, Storage, Var};
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{Parts, TypeId};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ArgumentKind, ModifierKind, SectionKind};
 use iecc_diag::{Code, Diagnostic};
@@ -191,26 +191,14 @@ impl Analysis<'_> {
         ty: TypeId,
         ask: &dyn Fn(PouId) -> Option<PouId>,
     ) -> Option<PouId> {
-        match self.types.base(ty) {
-            TypeKind::Instance(pou) => ask(*pou),
-            TypeKind::Array { element, .. } => self.instance_inside(*element, ask),
-            TypeKind::Struct(index) => {
-                let members = &self.types.structs[*index as usize].members;
-                members.iter().find_map(|m| self.instance_inside(m.ty, ask))
+        match self.types.parts(ty) {
+            Parts::Variables(pou) => ask(pou),
+            Parts::Elements { element, .. } => self.instance_inside(element, ask),
+            Parts::Members(def) => {
+                let mut members = def.members.iter();
+                members.find_map(|m| self.instance_inside(m.ty, ask))
             }
-            TypeKind::Error
-            | TypeKind::Nothing
-            | TypeKind::UntypedInt
-            | TypeKind::UntypedReal
-            | TypeKind::Null
-            | TypeKind::Elementary(_)
-            | TypeKind::Text { .. }
-            | TypeKind::Enum(_)
-            | TypeKind::Subrange { .. }
-            | TypeKind::OpenArray { .. }
-            | TypeKind::Interface(_)
-            | TypeKind::Reference(..)
-            | TypeKind::Alias(_) => None,
+            Parts::None => None,
         }
     }
 }

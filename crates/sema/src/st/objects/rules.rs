@@ -490,13 +490,8 @@ impl Analysis<'_> {
 
 /// What a call passes, in order.
 fn parameters(vars: &[Var]) -> Vec<&Var> {
-    let passed = |var: &&Var| {
-        matches!(
-            var.section,
-            SectionKind::Input | SectionKind::Output | SectionKind::InOut
-        )
-    };
-    vars.iter().filter(passed).collect()
+    let passed = vars.iter().filter(|var| var.section.direction().is_some());
+    passed.collect()
 }
 
 fn is_access(modifier: ModifierKind) -> bool {

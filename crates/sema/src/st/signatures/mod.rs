@@ -6,7 +6,7 @@ mod lasting;
 use super::analysis::{Analysis, MAX_RESOLUTION_DEPTH};
 use super::resolve::TypeScope;
 use super::signature::{Initial, Part, PouId, State, Storage, Var};
-use super::types::{TypeId, TypeKind};
+use super::types::{Parts, TypeId};
 use iecc_ast::st::{self, Declarations, Member, ModifierKind, PouKind, SectionKind, UnitKind};
 use iecc_diag::Code;
 
@@ -360,9 +360,9 @@ impl Analysis<'_> {
     pub(crate) fn complete_contained(&mut self, ty: TypeId, span: iecc_source::Span) -> TypeId {
         let mut at = ty;
         loop {
-            match self.types.base(at).clone() {
-                TypeKind::Array { element, .. } => at = element,
-                TypeKind::Instance(inner) => {
+            match self.types.parts(at) {
+                Parts::Elements { element, .. } => at = element,
+                Parts::Variables(inner) => {
                     let name = self.text(self.pou(inner).name);
                     let mut lineage = self.lineage(inner).into_iter();
                     if lineage.any(|id| self.pou(id).state == State::InProgress) {
@@ -379,12 +379,8 @@ impl Analysis<'_> {
                     self.depth -= 1;
                     return ty;
                 }
-                TypeKind::Struct(index) => {
-                    let members: Vec<TypeId> = self.types.structs[index as usize]
-                        .members
-                        .iter()
-                        .map(|member| member.ty)
-                        .collect();
+                Parts::Members(def) => {
+                    let members: Vec<TypeId> = def.members.iter().map(|m| m.ty).collect();
                     for member in members {
                         if self.types.is_scalar(member) {
                             continue;
@@ -395,19 +391,7 @@ impl Analysis<'_> {
                     }
                     return ty;
                 }
-                TypeKind::Error
-                | TypeKind::Nothing
-                | TypeKind::UntypedInt
-                | TypeKind::UntypedReal
-                | TypeKind::Null
-                | TypeKind::Elementary(_)
-                | TypeKind::Text { .. }
-                | TypeKind::Enum(_)
-                | TypeKind::Subrange { .. }
-                | TypeKind::OpenArray { .. }
-                | TypeKind::Interface(_)
-                | TypeKind::Reference(..)
-                | TypeKind::Alias(_) => return ty,
+                Parts::None => return ty,
             }
         }
     }

@@ -4,7 +4,7 @@
 
 use crate::hir::Type;
 use crate::st::analysis::Analysis;
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{Parts, TypeId, TypeKind};
 use iecc_source::Span;
 
 impl Analysis<'_> {
@@ -64,29 +64,15 @@ impl Analysis<'_> {
             }
             return self.packed_inside(alias.base);
         }
-        match self.types.kind(ty) {
-            TypeKind::Array { element, .. } => self.packed_inside(*element),
-            TypeKind::Struct(index) => {
-                let def = &self.types.structs[*index as usize];
+        match self.types.parts(ty) {
+            Parts::Elements { element, .. } => self.packed_inside(element),
+            Parts::Members(def) => {
                 if def.packed {
                     return Some("its attribute 'pack_mode' is not heeded");
                 }
                 def.members.iter().find_map(|m| self.packed_inside(m.ty))
             }
-            TypeKind::Error
-            | TypeKind::Nothing
-            | TypeKind::UntypedInt
-            | TypeKind::UntypedReal
-            | TypeKind::Null
-            | TypeKind::Elementary(_)
-            | TypeKind::Text { .. }
-            | TypeKind::Enum(_)
-            | TypeKind::Subrange { .. }
-            | TypeKind::OpenArray { .. }
-            | TypeKind::Instance(_)
-            | TypeKind::Interface(_)
-            | TypeKind::Reference(..)
-            | TypeKind::Alias(_) => None,
+            Parts::Variables(_) | Parts::None => None,
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::st::constant::Const;
 use crate::st::signature::{PouId, Storage, Var};
 use crate::st::types::TypeId;
 use iecc_ast::Symbol;
-use iecc_ast::st::{self, Argument, ArgumentKind, SectionKind};
+use iecc_ast::st::{self, Argument, ArgumentKind, Direction, SectionKind};
 use iecc_source::TextRange;
 
 impl Body<'_, '_> {
@@ -52,9 +52,9 @@ impl Body<'_, '_> {
             let Some(value) = argument.value else {
                 continue;
             };
-            match var.section {
-                SectionKind::Input => self.block_input(pou, place, var, value),
-                SectionKind::InOut => {
+            match var.section.direction() {
+                Some(Direction::In) => self.block_input(pou, place, var, value),
+                Some(Direction::InOut) => {
                     let found = in_outs.iter().find(|(name, _)| *name == var.name);
                     let (_, operand) = found.expect("in-outs were looked for");
                     let path = self.reference_argument(var, operand);
@@ -62,15 +62,7 @@ impl Body<'_, '_> {
                         refs[*position as usize - 1] = Some(path);
                     }
                 }
-                SectionKind::Var
-                | SectionKind::Output
-                | SectionKind::Temp
-                | SectionKind::External
-                | SectionKind::Global
-                | SectionKind::Access
-                | SectionKind::Config
-                | SectionKind::Static
-                | SectionKind::Instance => {}
+                Some(Direction::Out) | None => {}
             }
         }
         self.require_in_outs(pou, matched, range);

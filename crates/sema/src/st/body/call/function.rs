@@ -8,7 +8,7 @@ use crate::st::body::{Body, Operand, OperandKind, Place, Rights};
 use crate::st::signature::{Bindings, PouId, Var};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
-use iecc_ast::st::{self, Argument, SectionKind};
+use iecc_ast::st::{self, Argument, Direction};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
@@ -101,22 +101,14 @@ impl Body<'_, '_> {
             let Some(value) = argument.value else {
                 continue;
             };
-            match var.section {
-                SectionKind::Output => outputs.push((var, argument)),
-                SectionKind::InOut => {
+            match var.section.direction() {
+                Some(Direction::Out) => outputs.push((var, argument)),
+                Some(Direction::InOut) => {
                     let found = in_outs.iter().find(|(name, _)| *name == var.name);
                     let (_, operand) = found.expect("in-outs were looked for");
                     given.push((var, operand.clone()));
                 }
-                SectionKind::Var
-                | SectionKind::Input
-                | SectionKind::Temp
-                | SectionKind::External
-                | SectionKind::Global
-                | SectionKind::Access
-                | SectionKind::Config
-                | SectionKind::Static
-                | SectionKind::Instance => {
+                Some(Direction::In) | None => {
                     let operand = self.expr(value, Some(var.ty));
                     given.push((var, operand));
                 }
@@ -229,26 +221,18 @@ impl Body<'_, '_> {
         }
         for &index in &shape.refs {
             let var = &pou.vars[index];
-            let path = match var.section {
-                SectionKind::InOut => match find(var.name) {
+            let path = match var.section.direction() {
+                Some(Direction::InOut) => match find(var.name) {
                     Some(operand) => self.reference_argument(var, &operand),
                     None => None,
                 },
-                SectionKind::Output => {
+                Some(Direction::Out) => {
                     let place = self.temporary(self.text(var.name), var.ty);
                     let path = self.path_of(&place, range);
                     after.push((var.name, place, var.ty));
                     Some(path)
                 }
-                SectionKind::Var
-                | SectionKind::Input
-                | SectionKind::Temp
-                | SectionKind::External
-                | SectionKind::Global
-                | SectionKind::Access
-                | SectionKind::Config
-                | SectionKind::Static
-                | SectionKind::Instance => {
+                Some(Direction::In) | None => {
                     Some(self.aggregate_argument(callee, var, find(var.name), range))
                 }
             };

@@ -7,7 +7,7 @@ use crate::st::signature::{Bindings, NamespaceId, PouId, Var};
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{
-    self, Declarations, ExprKind as Written, SectionKind, TypeKind as WrittenType, UnitKind,
+    self, Declarations, Direction, ExprKind as Written, TypeKind as WrittenType, UnitKind,
 };
 
 impl Analysis<'_> {
@@ -38,18 +38,15 @@ impl Analysis<'_> {
             let Declarations::Variables(variables) = section.declarations else {
                 continue;
             };
-            if !matches!(
-                section.kind,
-                SectionKind::Input | SectionKind::InOut | SectionKind::Output
-            ) {
+            let Some(direction) = section.kind.direction() else {
                 continue;
-            }
+            };
             for decl in &unit.arena[variables] {
                 let ty = self.parameter_type(&unit.arena, decl.ty);
                 for ident in &unit.arena[decl.names] {
                     parameters.push(Parameter {
                         name: ident.name,
-                        output: section.kind == SectionKind::Output,
+                        output: direction == Direction::Out,
                         ty: ty.clone(),
                     });
                 }
@@ -172,14 +169,8 @@ impl Analysis<'_> {
     /// Inputs, outputs and in-outs in order.
     pub(crate) fn parameters(&self, pou: PouId) -> Vec<Var> {
         let vars = self.pou(pou).vars.iter();
-        vars.filter(|var| {
-            matches!(
-                var.section,
-                SectionKind::Input | SectionKind::Output | SectionKind::InOut
-            )
-        })
-        .cloned()
-        .collect()
+        let passed = vars.filter(|var| var.section.direction().is_some());
+        passed.cloned().collect()
     }
 
     /// `INT_TO_REAL`: TO_REAL and INT, a conversion. `ADD_INT`: ADD and INT, none.

@@ -5,7 +5,7 @@ use crate::hir::code::{PathStep, Root};
 use crate::st::body::property::Target;
 use crate::st::body::{Body, Operand, OperandKind, Rights};
 use crate::st::signature::{Def, Storage, Var};
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{Parts, TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ExprKind as Written, PouKind};
 use iecc_diag::{Code as Message, Diagnostic};
@@ -40,9 +40,8 @@ impl Body<'_, '_> {
             return self.error(Message::E1002, member.range, message);
         };
         let (mut steps, root, rights) = (place.steps.clone(), place.root, place.rights);
-        match self.an.types.base(base.ty).clone() {
-            TypeKind::Struct(index) => {
-                let def = &self.an.types.structs[index as usize];
+        match self.an.types.parts(base.ty) {
+            Parts::Members(def) => {
                 let Some(&position) = def.by_name.get(&member.name) else {
                     let candidates = def.members.iter().map(|m| m.name).collect();
                     return self.no_member(base.ty, member, candidates);
@@ -55,24 +54,11 @@ impl Body<'_, '_> {
                 }
                 self.place_operand(root, steps, rights, ty, range)
             }
-            TypeKind::Instance(pou) => {
+            Parts::Variables(pou) => {
                 let place = place.clone();
                 self.instance_member(pou, &place, member, range)
             }
-            TypeKind::Error
-            | TypeKind::Nothing
-            | TypeKind::UntypedInt
-            | TypeKind::UntypedReal
-            | TypeKind::Null
-            | TypeKind::Elementary(_)
-            | TypeKind::Text { .. }
-            | TypeKind::Enum(_)
-            | TypeKind::Subrange { .. }
-            | TypeKind::Array { .. }
-            | TypeKind::OpenArray { .. }
-            | TypeKind::Interface(_)
-            | TypeKind::Reference(..)
-            | TypeKind::Alias(_) => {
+            Parts::Elements { .. } | Parts::None => {
                 let message = format!("{} has no members", self.type_name(base.ty));
                 self.error(Message::E1002, member.range, message)
             }

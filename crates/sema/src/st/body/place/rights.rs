@@ -2,7 +2,7 @@
 
 use crate::st::body::{Body, Rights};
 use crate::st::signature::{Storage, Var};
-use iecc_ast::st::{PouKind, SectionKind};
+use iecc_ast::st::{Direction, PouKind, SectionKind};
 
 impl Body<'_, '_> {
     /// What a unit may do with its own variable. In CODESYS its inputs are as good as its other
@@ -14,19 +14,9 @@ impl Body<'_, '_> {
         }
         let shared = matches!(var.storage, Storage::Ref(_) | Storage::Located(_));
         let changed = self.an.options.codesys && !shared && !self.is_in_program();
-        match var.section {
-            SectionKind::Input if !changed => Rights::OwnInput,
-            SectionKind::Input
-            | SectionKind::Var
-            | SectionKind::Output
-            | SectionKind::InOut
-            | SectionKind::Temp
-            | SectionKind::External
-            | SectionKind::Global
-            | SectionKind::Access
-            | SectionKind::Config
-            | SectionKind::Static
-            | SectionKind::Instance => Rights::All,
+        match var.section.direction() {
+            Some(Direction::In) if !changed => Rights::OwnInput,
+            Some(Direction::In | Direction::Out | Direction::InOut) | None => Rights::All,
         }
     }
 
@@ -41,17 +31,8 @@ pub(super) fn outside_rights(var: &Var) -> Rights {
     if var.constant && var.section != SectionKind::Input {
         return Rights::Constant;
     }
-    match var.section {
-        SectionKind::Output => Rights::OtherOutput,
-        SectionKind::Var
-        | SectionKind::Input
-        | SectionKind::InOut
-        | SectionKind::Temp
-        | SectionKind::External
-        | SectionKind::Global
-        | SectionKind::Access
-        | SectionKind::Config
-        | SectionKind::Static
-        | SectionKind::Instance => Rights::All,
+    match var.section.direction() {
+        Some(Direction::Out) => Rights::OtherOutput,
+        Some(Direction::In | Direction::InOut) | None => Rights::All,
     }
 }
