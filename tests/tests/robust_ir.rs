@@ -12,16 +12,7 @@ const SEEDS: u64 = 1000;
 const SMALL: Options = Options {
     statements: 4,
     functions: 1,
-    loops: true,
-    faults: true,
-    floats: true,
-    division: true,
-    dynamic_places: true,
-    addresses: true,
-    now: true,
-    step: true,
-    elapsed: true,
-    timers: true,
+    ..Options::all()
 };
 
 #[test]

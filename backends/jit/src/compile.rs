@@ -6,7 +6,7 @@
 use crate::block::Block;
 use crate::entry;
 use crate::isa::has_rounding;
-use crate::plan::{Plan, calls};
+use crate::plan::Plan;
 use crate::translate::{Program, translate};
 use crate::writes::Writes;
 use cranelift_codegen::Context;
@@ -138,7 +138,7 @@ fn frame_bytes(context: &Context) -> u64 {
 
 fn deepest_callee(module: &Module, id: FuncId, stack: &SecondaryMap<FuncId, u64>) -> u64 {
     let func = &module.funcs[id];
-    let callees = func.layout.iter().flat_map(|&block| calls(func, block));
+    let callees = func.calls();
     callees.map(|callee| stack[callee]).max().unwrap_or(0)
 }
 

@@ -11,7 +11,7 @@
 //! at most twice as many as there are.
 
 use cranelift_entity::{EntityRef, EntitySet, SecondaryMap};
-use iecc_ir::analysis::{Cfg, Counted, Dominators, LocalRanges, Loop, Loops};
+use iecc_ir::analysis::{Cfg, Counted, Dominators, LocalRanges, Loop, Loops, callees_first};
 use iecc_ir::{
     Block, FuncId, Function, InstData, Layout, MemType, Module, Place, RefParam, Root, Terminator,
     Value,
@@ -99,7 +99,7 @@ pub(crate) struct Plan {
 impl Plan {
     /// Looks at every function the scan reaches.
     pub(crate) fn new(module: &Module, layout: &Layout) -> Self {
-        let order = callees_first(module);
+        let order = callees_first(module, [module.scan]);
         let state_len = layout.size(&module.types, MemType::Struct(module.state));
         let mut plan = Self {
             order: order.clone(),
@@ -145,7 +145,7 @@ impl Plan {
                 .work
                 .saturating_add(self.block_work(func, block, &own));
             facts.can_fault |= matches!(func.terminator(block), Terminator::Fault(_));
-            for callee in calls(func, block) {
+            for callee in func.calls_in(block) {
                 facts.can_fault |= self.facts[callee].can_fault;
                 facts.metered |= self.facts[callee].metered;
             }
@@ -171,7 +171,7 @@ impl Plan {
 
     fn block_work(&self, func: &Function, block: Block, own: &dyn Fn(Block) -> u64) -> u64 {
         let own = own(block);
-        calls(func, block)
+        func.calls_in(block)
             .map(|callee| &self.facts[callee])
             .filter(|callee| !callee.metered)
             .fold(own, |sum, callee| sum.saturating_add(callee.work))
@@ -342,49 +342,4 @@ fn own_work(module: &Module, layout: &Layout, func: &Function, block: Block) -> 
         .iter()
         .map(|&inst| layout.moved_bytes(module, func, func.inst(inst)) / BYTES_PER_WORK);
     moved.fold(insts.len() as u64 + 1, u64::saturating_add)
-}
-
-/// The callees of a block, in order.
-pub(crate) fn calls(func: &Function, block: Block) -> impl Iterator<Item = FuncId> + '_ {
-    let insts = func.block(block).insts.iter();
-    insts.filter_map(|&inst| match func.inst(inst) {
-        InstData::Call { func, .. } => Some(*func),
-        InstData::Const { .. }
-        | InstData::Unary { .. }
-        | InstData::Binary { .. }
-        | InstData::Compare { .. }
-        | InstData::Convert { .. }
-        | InstData::Select { .. }
-        | InstData::Load { .. }
-        | InstData::Store { .. }
-        | InstData::Copy { .. }
-        | InstData::Clear { .. }
-        | InstData::Address { .. }
-        | InstData::Now
-        | InstData::Elapsed { .. }
-        | InstData::Step { .. } => None,
-    })
-}
-
-/// Postorder over calls with a stack of our own, so that deep chains of calls are harmless.
-fn callees_first(module: &Module) -> Vec<FuncId> {
-    let callees = |id: FuncId| {
-        let func = &module.funcs[id];
-        let all: Vec<FuncId> = func.layout.iter().flat_map(|&b| calls(func, b)).collect();
-        all.into_iter()
-    };
-    let (mut order, mut seen) = (Vec::new(), EntitySet::<FuncId>::new());
-    seen.insert(module.scan);
-    let mut path = vec![(module.scan, callees(module.scan))];
-    while let Some((func, rest)) = path.last_mut() {
-        match rest.next() {
-            Some(callee) if seen.insert(callee) => path.push((callee, callees(callee))),
-            Some(_) => {}
-            None => {
-                order.push(*func);
-                path.pop();
-            }
-        }
-    }
-    order
 }

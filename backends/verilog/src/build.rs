@@ -24,7 +24,7 @@ impl Netlist {
             Op::Const(bits) => self.constant(width, !bits),
             Op::Not(inner) => inner,
             Op::Compare(relation, signed, args) => {
-                self.intern(Op::Compare(inverted(relation), signed, args), 1)
+                self.intern(Op::Compare(relation.inverted(), signed, args), 1)
             }
             Op::Source(_)
             | Op::Gate(..)
@@ -96,7 +96,7 @@ impl Netlist {
             return self.constant(1, u128::from(holds));
         }
         if self.as_const(a).is_some() {
-            return self.compare(swapped(relation), signed, b, a);
+            return self.compare(relation.swapped(), signed, b, a);
         }
         if width == 1 && !signed && matches!(relation, Relation::Eq | Relation::Ne) {
             let differ = self.gate(Gate::Xor, a, b);
@@ -345,27 +345,6 @@ fn eval_compare(relation: Relation, signed: bool, width: u32, x: u128, y: u128) 
         Relation::Le => order.is_le(),
         Relation::Gt => order.is_gt(),
         Relation::Ge => order.is_ge(),
-    }
-}
-
-fn inverted(relation: Relation) -> Relation {
-    match relation {
-        Relation::Eq => Relation::Ne,
-        Relation::Ne => Relation::Eq,
-        Relation::Lt => Relation::Ge,
-        Relation::Le => Relation::Gt,
-        Relation::Gt => Relation::Le,
-        Relation::Ge => Relation::Lt,
-    }
-}
-
-fn swapped(relation: Relation) -> Relation {
-    match relation {
-        Relation::Eq | Relation::Ne => relation,
-        Relation::Lt => Relation::Gt,
-        Relation::Le => Relation::Ge,
-        Relation::Gt => Relation::Lt,
-        Relation::Ge => Relation::Le,
     }
 }
 

@@ -20,7 +20,7 @@ impl Lowering<'_> {
             return self.net().constant(1, u128::from(holds));
         }
         let (relation, args, [left, right]) = match bounds {
-            [a, b] if a.lo == a.hi => (swapped(relation), [args[1], args[0]], [b, a]),
+            [a, b] if a.lo == a.hi => (relation.swapped(), [args[1], args[0]], [b, a]),
             [a, b] => (relation, args, [a, b]),
         };
         if right.lo == right.hi
@@ -137,16 +137,6 @@ fn against_end(relation: Relation, left: Bounds, constant: i128) -> Option<(Rela
         _ => return None,
     };
     Some((if at_end { Relation::Eq } else { Relation::Ne }, end))
-}
-
-fn swapped(relation: Relation) -> Relation {
-    match relation {
-        Relation::Eq | Relation::Ne => relation,
-        Relation::Lt => Relation::Gt,
-        Relation::Le => Relation::Ge,
-        Relation::Gt => Relation::Lt,
-        Relation::Ge => Relation::Le,
-    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! An upper bound of the fuel a scan takes, to know whether it can run out.
 
 use cranelift_entity::SecondaryMap;
-use iecc_ir::analysis::{Cfg, Dominators, Loops};
-use iecc_ir::{Block, FuncId, Function, InstData, Layout, Module};
-use std::collections::{BTreeMap, BTreeSet};
+use iecc_ir::analysis::{Cfg, Dominators, Loops, callees_first};
+use iecc_ir::{Block, FuncId, Function, Layout, Module};
+use std::collections::BTreeMap;
 
 /// Bytes that are moved or made 0 at the cost of one instruction.
 const BYTES_PER_FUEL: u64 = 64;
@@ -41,19 +41,9 @@ impl Costs {
 /// The most fuel a scan can take; `u64::MAX` if it contains a loop.
 pub(crate) fn worst_case_cost(module: &Module, blocks: &Costs) -> u64 {
     let mut costs = BTreeMap::new();
-    let mut stack = vec![module.scan];
-    // The call graph is acyclic: a function is done once its callees are.
-    while let Some(&id) = stack.last() {
-        let func = &module.funcs[id];
-        let open = callees(func).filter(|id| !costs.contains_key(id));
-        let open: BTreeSet<FuncId> = open.collect();
-        if costs.contains_key(&id) {
-            stack.pop();
-        } else if open.is_empty() {
-            costs.insert(id, function_cost(id, func, blocks, &costs));
-        } else {
-            stack.extend(open);
-        }
+    for id in callees_first(module, [module.scan]) {
+        let cost = function_cost(id, &module.funcs[id], blocks, &costs);
+        costs.insert(id, cost);
     }
     costs[&module.scan]
 }
@@ -70,31 +60,6 @@ fn function_cost(
         return u64::MAX;
     }
     let blocks = func.layout.iter().map(|&block| blocks.of(id, block));
-    let calls = callees(func).map(|callee| costs[&callee]);
+    let calls = func.calls().map(|callee| costs[&callee]);
     blocks.chain(calls).fold(0, u64::saturating_add)
-}
-
-/// The callee of every call, in order, as often as it is called.
-fn callees(func: &Function) -> impl Iterator<Item = FuncId> {
-    let insts = func
-        .layout
-        .iter()
-        .flat_map(|&block| &func.block(block).insts);
-    insts.filter_map(|&inst| match func.inst(inst) {
-        InstData::Call { func, .. } => Some(*func),
-        InstData::Const { .. }
-        | InstData::Unary { .. }
-        | InstData::Binary { .. }
-        | InstData::Compare { .. }
-        | InstData::Convert { .. }
-        | InstData::Select { .. }
-        | InstData::Load { .. }
-        | InstData::Store { .. }
-        | InstData::Copy { .. }
-        | InstData::Clear { .. }
-        | InstData::Address { .. }
-        | InstData::Now
-        | InstData::Elapsed { .. }
-        | InstData::Step { .. } => None,
-    })
 }

@@ -1,6 +1,6 @@
 //! Functions: blocks, values and instructions in dense tables.
 
-use crate::{InstData, MemType, Origin, Terminator, Type};
+use crate::{FuncId, InstData, MemType, Origin, Terminator, Type};
 use cranelift_entity::{PrimaryMap, SecondaryMap, entity_impl};
 
 /// An SSA value: defined once, by an instruction or as a block parameter.
@@ -280,6 +280,18 @@ impl Function {
     /// What defines a value.
     pub fn value_def(&self, value: Value) -> ValueDef {
         self.values[value].def
+    }
+
+    /// The callee of every call of a block, in order.
+    pub fn calls_in(&self, block: Block) -> impl Iterator<Item = FuncId> {
+        let insts = self.block(block).insts.iter();
+        insts.filter_map(|&inst| self.inst(inst).callee())
+    }
+
+    /// The callee of every call, in layout order, as often as it is called.
+    pub fn calls(&self) -> impl Iterator<Item = FuncId> {
+        let blocks = self.layout.iter();
+        blocks.flat_map(|&block| self.calls_in(block))
     }
 
     /// The instruction that defines a value, unless it is a block parameter.

@@ -126,6 +126,15 @@ pub enum InstData {
 pub type Values = SmallVec<[Value; 4]>;
 
 impl InstData {
+    /// The function that a call runs.
+    pub fn callee(&self) -> Option<FuncId> {
+        if let Self::Call { func, .. } = self {
+            Some(*func)
+        } else {
+            None
+        }
+    }
+
     /// Every value the instruction reads, in text order.
     pub fn values(&self) -> Values {
         match self {

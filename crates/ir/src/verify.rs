@@ -318,19 +318,8 @@ impl ModuleCheck<'_, '_> {
 }
 
 fn callees(module: &Module, id: FuncId) -> Vec<FuncId> {
-    let func = &module.funcs[id];
-    let insts = func
-        .layout
-        .iter()
-        .flat_map(|&block| &func.block(block).insts);
-    let called: BTreeSet<FuncId> = insts
-        .filter_map(|&inst| {
-            let InstData::Call { func, .. } = func.inst(inst) else {
-                return None;
-            };
-            module.funcs.get(*func).is_some().then_some(*func)
-        })
-        .collect();
+    let known = |callee: &FuncId| module.funcs.get(*callee).is_some();
+    let called: BTreeSet<FuncId> = module.funcs[id].calls().filter(known).collect();
     called.into_iter().collect()
 }
 

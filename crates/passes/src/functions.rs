@@ -1,51 +1,13 @@
 //! The call graph: callees before callers, and removal of functions nobody calls.
 
 use cranelift_entity::{EntitySet, PrimaryMap, SecondaryMap, packed_option::PackedOption};
-use iecc_ir::{FuncId, Function, InstData, Module};
+use iecc_ir::{FuncId, Function, InstData, Module, analysis};
 use std::collections::BTreeSet;
 
 /// Functions that `scan` and `prescan` lead to, callees before callers.
 pub(crate) fn callees_first(module: &Module) -> Vec<FuncId> {
-    let mut order = Vec::new();
-    let mut seen = EntitySet::<FuncId>::new();
-    let mut stack: Vec<(FuncId, Vec<FuncId>)> = Vec::new();
-    for root in [Some(module.scan), module.prescan].into_iter().flatten() {
-        if seen.insert(root) {
-            stack.push((root, callees(&module.funcs[root])));
-        }
-        while let Some((func, rest)) = stack.last_mut() {
-            match rest.pop() {
-                Some(callee) if seen.insert(callee) => {
-                    stack.push((callee, callees(&module.funcs[callee])));
-                }
-                Some(_) => {}
-                None => {
-                    order.push(*func);
-                    stack.pop();
-                }
-            }
-        }
-    }
-    order
-}
-
-fn callees(func: &Function) -> Vec<FuncId> {
-    let called: BTreeSet<FuncId> = calls(func).collect();
-    called.into_iter().rev().collect()
-}
-
-/// The callee of every call of a function, in layout order.
-pub(crate) fn calls(func: &Function) -> impl Iterator<Item = FuncId> + '_ {
-    let insts = func
-        .layout
-        .iter()
-        .flat_map(|&block| &func.block(block).insts);
-    insts.filter_map(|&inst| {
-        let InstData::Call { func, .. } = func.inst(inst) else {
-            return None;
-        };
-        Some(*func)
-    })
+    let roots = [Some(module.scan), module.prescan];
+    analysis::callees_first(module, roots.into_iter().flatten())
 }
 
 /// The name, with as many primes as make it new.

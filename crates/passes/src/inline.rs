@@ -46,7 +46,7 @@ pub(crate) fn inline_small(module: &mut Module) {
     let mut count: SecondaryMap<FuncId, u32> = SecondaryMap::new();
     let mut loops = EntitySet::<FuncId>::new();
     for (id, func) in module.funcs.iter() {
-        functions::calls(func).for_each(|callee| count[callee] += 1);
+        func.calls().for_each(|callee| count[callee] += 1);
         if size(func) > SMALL && goes_back(func) {
             loops.insert(id);
         }
@@ -122,7 +122,7 @@ impl Inliner {
     ) -> Vec<bool> {
         let limit = self.max_function.min(*size + self.copies_left);
         let mut with_locals = BTreeSet::new();
-        functions::calls(func)
+        func.calls()
             .map(|callee| {
                 // One for the jump, so that empty bodies count too.
                 let grown = *size + self.sizes[callee] + 1;

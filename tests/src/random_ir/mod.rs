@@ -52,7 +52,7 @@ pub struct Options {
 
 impl Options {
     /// Everything the IR has.
-    pub fn all() -> Self {
+    pub const fn all() -> Self {
         Self {
             statements: 24,
             functions: 3,
