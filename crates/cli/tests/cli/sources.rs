@@ -1,30 +1,8 @@
 //! Many files: what `iecc` does with files, folders and warnings.
-#![expect(clippy::disallowed_methods, reason = "the program is run on files")]
 
+use crate::support::{folder, iecc, stderr};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
-use tempfile::TempDir;
-
-fn iecc(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_iecc"));
-    let command = command.args(arguments).current_dir(folder);
-    command.output().expect("the program runs")
-}
-
-fn stderr(output: &Output) -> &str {
-    std::str::from_utf8(&output.stderr).expect("UTF-8")
-}
-
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().expect("a folder");
-    for (name, text) in files {
-        let path = folder.path().join(name);
-        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
-        fs::write(path, text).expect("written");
-    }
-    folder
-}
 
 /// A Logix export that compiles with one warning, E6023.
 const WARNS: &str = r#"<RSLogix5000Content SchemaRevision="1.0" SoftwareRevision="34.00" TargetName="C" TargetType="Controller" ContainsContext="false">

@@ -1,19 +1,11 @@
 //! The real program `iecc`: exit codes, messages, and what it leaves on the disk.
-#![expect(clippy::disallowed_methods, reason = "the program is run")]
 
-use std::process::{Command, Output};
+use crate::support::{program, stderr, stdout};
+use std::process::Output;
 
 fn iecc(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_iecc"));
+    let mut command = program();
     command.args(arguments).output().expect("the program runs")
-}
-
-fn stdout(output: &Output) -> &str {
-    std::str::from_utf8(&output.stdout).expect("UTF-8")
-}
-
-fn stderr(output: &Output) -> &str {
-    std::str::from_utf8(&output.stderr).expect("UTF-8")
 }
 
 #[test]

@@ -1,11 +1,8 @@
 //! `iecc conformance`: what it says of a suite, and how it ends.
-#![expect(
-    clippy::disallowed_methods,
-    reason = "the program is run over files that are written"
-)]
 
+use crate::support::{program, stderr, stdout};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 use tempfile::TempDir;
 
 const SUM: &str = "(*! covers: ed3:71:11
@@ -37,17 +34,9 @@ fn suite(cases: &[(&str, &str)]) -> TempDir {
 }
 
 fn conformance(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_iecc"));
+    let mut command = program();
     let command = command.arg("conformance").arg(folder).args(arguments);
     command.output().expect("the program runs")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("UTF-8")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("UTF-8")
 }
 
 #[test]

@@ -1,10 +1,8 @@
 //! What users get for a broken program: a code, the line and column in their file, exit code 1,
 //! and no file.
-#![expect(clippy::disallowed_methods, reason = "the program is run on files")]
 
+use crate::support::iecc;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// A controller with one task, one program, the tags given and the rungs given; the text of rung
@@ -36,12 +34,6 @@ fn export(tags: &str, rungs: &[&str]) -> String {
 }
 
 const TAGS: &str = r#"<Tag Name="run" TagType="Base" DataType="BOOL"/>"#;
-
-fn iecc(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_iecc"));
-    let command = command.current_dir(folder).args(arguments);
-    command.output().expect("the program runs")
-}
 
 /// Every command that makes something, with the place where it would.
 const COMMANDS: [&[&str]; 4] = [

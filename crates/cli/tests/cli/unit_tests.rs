@@ -1,36 +1,10 @@
 //! `iecc test`: what it prints, its exit codes, and what it leaves on the disk.
-#![expect(clippy::disallowed_methods, reason = "the program is run on files")]
 
+use crate::support::{folder, iecc, stderr, stdout};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
-
-fn iecc(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_iecc"));
-    let command = command.args(arguments).current_dir(folder);
-    command.output().expect("the program runs")
-}
-
-fn stdout(output: &Output) -> &str {
-    std::str::from_utf8(&output.stdout).expect("UTF-8")
-}
-
-fn stderr(output: &Output) -> &str {
-    std::str::from_utf8(&output.stderr).expect("UTF-8")
-}
-
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().expect("a folder");
-    for (name, text) in files {
-        let path = folder.path().join(name);
-        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
-        fs::write(path, text).expect("written");
-    }
-    folder
-}
 
 const MOTOR: &str = "\
 FUNCTION_BLOCK Motor
