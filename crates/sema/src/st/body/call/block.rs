@@ -2,7 +2,7 @@
 
 use super::presence::Presence;
 use crate::hir::code::{Call, ExprKind, PathId, PathStep, StmtKind};
-use crate::st::body::object::{Run, Target};
+use crate::st::body::object::Target;
 use crate::st::body::{Body, Operand, OperandKind, Place, Rights};
 use crate::st::constant::Const;
 use crate::st::signature::{PouId, Storage, Var};
@@ -45,9 +45,41 @@ impl Body<'_, '_> {
         eno: Option<Argument>,
         range: TextRange,
     ) {
-        let mut refs: Vec<Option<PathId>> = Vec::new();
+        let refs = self.block_arguments(pou, place, matched, in_outs);
+        self.require_in_outs(pou, matched, range);
+        let run = self.run(pou, place, None, pou, range);
+        let target = Target {
+            signature: pou,
+            run,
+            presence: Presence::default(),
+        };
+        let eno_place = eno.map(|_| self.temporary("ENO", TypeId::BOOL));
+        let mut changes_eno = false;
+        if let Some(refs) = refs {
+            changes_eno = self.shape_of(&target).eno;
+            let changed = eno_place.as_ref().filter(|_| changes_eno);
+            self.run_block(&target, place, refs, changed, range);
+        }
+        for (var, argument) in matched {
+            if var.section == SectionKind::Output {
+                self.block_output(pou, place, var, argument);
+            }
+        }
+        if let (Some(eno), Some(place)) = (eno, eno_place) {
+            self.eno_to(changes_eno, place, &eno);
+        }
+    }
+
+    /// Stores the inputs, and gives what the in-outs stand for; `None` after a mistake in them.
+    fn block_arguments(
+        &mut self,
+        pou: PouId,
+        place: &Place,
+        matched: &[(Var, Argument)],
+        in_outs: &[(Symbol, Operand)],
+    ) -> Option<Vec<PathId>> {
         let shape = self.an.call_shape(pou);
-        refs.resize(shape.refs.len(), None);
+        let mut refs: Vec<Option<PathId>> = vec![None; shape.refs.len()];
         for (var, argument) in matched {
             let Some(value) = argument.value else {
                 continue;
@@ -65,50 +97,32 @@ impl Body<'_, '_> {
                 Some(Direction::Out) | None => {}
             }
         }
-        self.require_in_outs(pou, matched, range);
-        let run = self.run(pou, place, None, pou, range);
-        let given: Option<Vec<PathId>> = refs.into_iter().collect();
-        let mut changes_eno = false;
-        let eno_place = eno.map(|_| self.temporary("ENO", TypeId::BOOL));
-        if let Some(given) = given {
-            let target = Target {
-                signature: pou,
-                run,
-                presence: Presence::default(),
-            };
-            changes_eno = self.shape_of(&target).eno;
-            let callee = self.run_unit(&target);
-            let (mut refs, mut args) = (Vec::new(), Vec::new());
-            match &target.run {
-                Run::Function => {}
-                Run::On { instance, .. } => refs.push(self.path_of(instance, range)),
-                Run::Choose { address, .. } => args.push(*address),
-            }
-            refs.extend(given);
-            let mut outputs = Vec::new();
-            if let (true, Some(eno)) = (changes_eno, &eno_place) {
-                outputs.push((0, self.path_of(eno, range)));
-            }
-            let call = self.add_call(Call {
-                callee,
-                refs,
-                args,
-                outputs,
-            });
-            let value = self.add_expr(ExprKind::Call(call), crate::hir::Elementary::Bool, range);
-            let call = self.add_stmt(StmtKind::Eval(value), range);
-            let eno = eno_place.as_ref().filter(|_| changes_eno);
-            let call = self.unless_mocked(pou, place, call, eno, range);
-            self.pending.push(call);
-        }
-        for (var, argument) in matched {
-            if var.section == SectionKind::Output {
-                self.block_output(pou, place, var, argument);
-            }
-        }
-        if let (Some(eno), Some(place)) = (eno, eno_place) {
-            self.eno_to(changes_eno, place, &eno);
-        }
+        refs.into_iter().collect()
+    }
+
+    /// Runs the body of an instance, unless the instance is mocked. `eno` is where its ENO goes.
+    fn run_block(
+        &mut self,
+        target: &Target,
+        place: &Place,
+        in_outs: Vec<PathId>,
+        eno: Option<&Place>,
+        range: TextRange,
+    ) {
+        let callee = self.run_unit(target);
+        let (mut refs, args) = self.receiver(target, range);
+        refs.extend(in_outs);
+        let outputs = eno.map(|eno| (0, self.path_of(eno, range)));
+        let call = self.add_call(Call {
+            callee,
+            refs,
+            args,
+            outputs: outputs.into_iter().collect(),
+        });
+        let value = self.add_expr(ExprKind::Call(call), crate::hir::Elementary::Bool, range);
+        let call = self.add_stmt(StmtKind::Eval(value), range);
+        let call = self.unless_mocked(target.signature, place, call, eno, range);
+        self.pending.push(call);
     }
 
     /// Stores the ENO of a call; it is TRUE where the body does not change it.

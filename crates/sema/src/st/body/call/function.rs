@@ -5,12 +5,30 @@ use crate::st::body::library::Given;
 use crate::st::body::object::{Run, Target, function_target};
 use crate::st::body::place::shared_bytes;
 use crate::st::body::{Body, Operand, OperandKind, Place, Rights};
-use crate::st::signature::{Bindings, PouId, Var};
+use crate::st::signature::{Bindings, Pou, PouId, Var};
+use crate::st::signatures::CallShape;
 use crate::st::types::{TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, Argument, Direction};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
+
+/// A call that is being written down.
+struct Passing {
+    pou: Pou,
+    shape: CallShape,
+    call: Call,
+    /// Where outputs are that are passed by reference.
+    outputs: Vec<(Symbol, Place)>,
+    range: TextRange,
+}
+
+fn operand_for(given: &[(Var, Operand)], name: Symbol) -> Option<&Operand> {
+    let mut given = given.iter();
+    given
+        .find(|(var, _)| var.name == name)
+        .map(|(_, operand)| operand)
+}
 
 impl Body<'_, '_> {
     /// A call of a function, which may be overloaded or generic.
@@ -195,6 +213,19 @@ impl Body<'_, '_> {
         })
     }
 
+    /// The instance that a call is for, as the first reference or value that is passed.
+    pub(super) fn receiver(
+        &mut self,
+        target: &Target,
+        range: TextRange,
+    ) -> (Vec<PathId>, Vec<ExprId>) {
+        match &target.run {
+            Run::Function => (Vec::new(), Vec::new()),
+            Run::On { instance, .. } => (vec![self.path_of(instance, range)], Vec::new()),
+            Run::Choose { address, .. } => (Vec::new(), vec![*address]),
+        }
+    }
+
     /// Writes a call down: omitted inputs take their defaults, outputs go where they are wanted.
     pub(crate) fn finish_call(
         &mut self,
@@ -204,159 +235,168 @@ impl Body<'_, '_> {
         eno: Option<Argument>,
         range: TextRange,
     ) -> Operand {
-        let callee = target.signature;
-        let shape = self.shape_of(&target);
-        let pou = self.an.pou(callee).clone();
-        let find = |name| {
-            given
-                .iter()
-                .find(|(var, _)| var.name == name)
-                .map(|(_, o)| o.clone())
-        };
-        let (mut refs, mut args, mut after) = (Vec::new(), Vec::new(), Vec::new());
-        match &target.run {
-            Run::Function => {}
-            Run::On { instance, .. } => refs.push(self.path_of(instance, range)),
-            Run::Choose { address, .. } => args.push(*address),
-        }
-        for &index in &shape.refs {
-            let var = &pou.vars[index];
-            let path = match var.section.direction() {
-                Some(Direction::InOut) => match find(var.name) {
-                    Some(operand) => self.reference_argument(var, &operand),
-                    None => None,
-                },
-                Some(Direction::Out) => {
-                    let place = self.temporary(self.text(var.name), var.ty);
-                    let path = self.path_of(&place, range);
-                    after.push((var.name, place, var.ty));
-                    Some(path)
-                }
-                Some(Direction::In) | None => {
-                    Some(self.aggregate_argument(callee, var, find(var.name), range))
-                }
-            };
-            let Some(path) = path else {
-                return Operand {
-                    ty: TypeId::ERROR,
-                    ..Operand::error(range)
-                };
-            };
-            refs.push(path);
-        }
-        for &index in &shape.params {
-            let var = &pou.vars[index];
-            let value = match find(var.name) {
-                Some(operand) => self.as_scalar(&operand, var.ty),
-                None => self.default_argument(var, range),
-            };
-            args.push(value);
-        }
-        let result_place = match pou.result {
-            Some(ty) if shape.result_by_ref => {
-                let place = self.temporary("result", ty);
-                refs.push(self.path_of(&place, range));
-                Some(place)
-            }
-            _ => None,
-        };
+        let (refs, args) = self.receiver(&target, range);
         let call = Call {
             callee: self.run_unit(&target),
             refs,
             args,
             outputs: Vec::new(),
         };
-        self.emit_call(
+        let mut passing = Passing {
+            pou: self.an.pou(target.signature).clone(),
+            shape: self.shape_of(&target),
             call,
-            &shape,
-            &pou,
-            result_place,
-            &outputs,
-            &after,
-            eno,
+            outputs: Vec::new(),
             range,
-        )
+        };
+        if !self.pass_references(&mut passing, target.signature, &given) {
+            return Operand::error(range);
+        }
+        self.pass_values(&mut passing, &given);
+        let result = self.pass_result(&mut passing);
+        self.emit_call(passing, result, &outputs, eno)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "the parts of one call")]
-    fn emit_call(
+    /// Passes in-outs, and inputs and outputs of more than one number; whether that went well.
+    fn pass_references(
         &mut self,
-        mut call: Call,
-        shape: &crate::st::signatures::CallShape,
-        pou: &crate::st::signature::Pou,
-        result_place: Option<Place>,
-        outputs: &[(Var, Argument)],
-        by_ref: &[(Symbol, Place, TypeId)],
-        eno: Option<Argument>,
-        range: TextRange,
-    ) -> Operand {
-        // Outputs pass through temporaries: a target may have another type, or be negated.
-        let mut moves = Vec::new();
-        for (var, argument) in outputs {
-            let from = match by_ref.iter().find(|(name, ..)| *name == var.name) {
-                Some((_, place, ty)) => (place.clone(), *ty),
-                None => {
+        passing: &mut Passing,
+        callee: PouId,
+        given: &[(Var, Operand)],
+    ) -> bool {
+        let range = passing.range;
+        for &index in &passing.shape.refs {
+            let var = &passing.pou.vars[index];
+            let operand = operand_for(given, var.name);
+            let path = match var.section.direction() {
+                Some(Direction::InOut) => {
+                    operand.and_then(|operand| self.reference_argument(var, operand))
+                }
+                Some(Direction::Out) => {
                     let place = self.temporary(self.text(var.name), var.ty);
-                    let position = shape
-                        .results
-                        .iter()
-                        .position(|i| pou.vars[*i].name == var.name);
-                    let Some(position) = position else { continue };
-                    let position = position as u32 + u32::from(shape.result_by_value);
                     let path = self.path_of(&place, range);
-                    call.outputs.push((position, path));
-                    (place, var.ty)
+                    passing.outputs.push((var.name, place));
+                    Some(path)
+                }
+                Some(Direction::In) | None => {
+                    Some(self.aggregate_argument(callee, var, operand.cloned(), range))
                 }
             };
-            moves.push((from, *argument));
+            let Some(path) = path else { return false };
+            passing.call.refs.push(path);
         }
-        let eno = eno.map(|argument| (argument, self.temporary("ENO", TypeId::BOOL)));
-        if let (true, Some((_, place))) = (shape.eno, &eno) {
-            let position = shape.results.len() as u32 + u32::from(shape.result_by_value);
-            let path = self.path_of(place, range);
-            call.outputs.push((position, path));
-        }
-        let direct = moves.is_empty() && eno.is_none() && shape.result_by_value;
-        let ty = match pou.result {
-            Some(ty) if shape.result_by_value => self.an.scalar(ty),
-            _ => crate::hir::Elementary::Bool,
-        };
-        let call = self.add_call(call);
-        let value = self.add_expr(ExprKind::Call(call), ty, range);
-        if direct {
-            return Operand::value(value, pou.result.expect("by value"), range);
-        }
-        let result = if shape.result_by_value {
-            let result_ty = pou.result.expect("by value");
-            let place = self.temporary("result", result_ty);
-            let path = self.path_of(&place, range);
-            self.before(StmtKind::Assign(path, value), range);
-            Some(place)
-        } else {
-            self.before(StmtKind::Eval(value), range);
-            result_place
-        };
-        for ((place, ty), argument) in moves {
-            let from = Operand {
-                kind: OperandKind::Place(place),
-                ty,
-                range: argument.range,
+        true
+    }
+
+    fn pass_values(&mut self, passing: &mut Passing, given: &[(Var, Operand)]) {
+        for &index in &passing.shape.params {
+            let var = &passing.pou.vars[index];
+            let value = match operand_for(given, var.name) {
+                Some(operand) => self.as_scalar(operand, var.ty),
+                None => self.default_argument(var, passing.range),
             };
+            passing.call.args.push(value);
+        }
+    }
+
+    /// Where a result goes that is more than one number.
+    fn pass_result(&mut self, passing: &mut Passing) -> Option<Place> {
+        let ty = passing.pou.result.filter(|_| passing.shape.result_by_ref)?;
+        let place = self.temporary("result", ty);
+        let path = self.path_of(&place, passing.range);
+        passing.call.refs.push(path);
+        Some(place)
+    }
+
+    fn emit_call(
+        &mut self,
+        mut passing: Passing,
+        result: Option<Place>,
+        outputs: &[(Var, Argument)],
+        eno: Option<Argument>,
+    ) -> Operand {
+        let range = passing.range;
+        let moves = self.moves(&mut passing, outputs);
+        let eno = eno.map(|argument| (argument, self.temporary("ENO", TypeId::BOOL)));
+        if let (true, Some((_, place))) = (passing.shape.eno, &eno) {
+            let position = passing.shape.results.len();
+            self.fetch(&mut passing, position, place);
+        }
+        let by_value = passing.pou.result.filter(|_| passing.shape.result_by_value);
+        let storage = by_value.map_or(crate::hir::Elementary::Bool, |ty| self.an.scalar(ty));
+        let call = self.add_call(passing.call);
+        let value = self.add_expr(ExprKind::Call(call), storage, range);
+        let result = match by_value {
+            Some(ty) if moves.is_empty() && eno.is_none() => {
+                return Operand::value(value, ty, range);
+            }
+            Some(ty) => {
+                let place = self.temporary("result", ty);
+                let path = self.path_of(&place, range);
+                self.before(StmtKind::Assign(path, value), range);
+                Some(place)
+            }
+            None => {
+                self.before(StmtKind::Eval(value), range);
+                result
+            }
+        };
+        for (from, argument) in moves {
             if let Some(target) = argument.value {
                 self.output_to(from, target, &argument);
             }
         }
         if let Some((argument, place)) = eno {
-            self.eno_to(shape.eno, place, &argument);
+            self.eno_to(passing.shape.eno, place, &argument);
         }
-        match (result, pou.result) {
+        match (result, passing.pou.result) {
             (Some(place), Some(ty)) => Operand {
                 kind: OperandKind::Place(place),
                 ty,
                 range,
             },
-            _ => Operand::nothing(range),
+            (Some(_), None) | (None, _) => Operand::nothing(range),
         }
+    }
+
+    /// Outputs that are wanted, with where they go. They pass through temporaries: a target may have
+    /// another type, or be negated.
+    fn moves(
+        &mut self,
+        passing: &mut Passing,
+        outputs: &[(Var, Argument)],
+    ) -> Vec<(Operand, Argument)> {
+        let mut moves = Vec::new();
+        for (var, argument) in outputs {
+            let by_ref = passing.outputs.iter().find(|(name, _)| *name == var.name);
+            let place = match by_ref {
+                Some((_, place)) => place.clone(),
+                None => {
+                    let mut results = passing.shape.results.iter();
+                    let is_it = |index: &usize| passing.pou.vars[*index].name == var.name;
+                    let Some(position) = results.position(is_it) else {
+                        continue;
+                    };
+                    let place = self.temporary(self.text(var.name), var.ty);
+                    self.fetch(passing, position, &place);
+                    place
+                }
+            };
+            let from = Operand {
+                kind: OperandKind::Place(place),
+                ty: var.ty,
+                range: argument.range,
+            };
+            moves.push((from, *argument));
+        }
+        moves
+    }
+
+    /// Has one of the results stored at a place, counted without the result by value.
+    fn fetch(&mut self, passing: &mut Passing, position: usize, place: &Place) {
+        let position = position + usize::from(passing.shape.result_by_value);
+        let path = self.path_of(place, passing.range);
+        passing.call.outputs.push((position as u32, path));
     }
 
     /// The place that an in-out stands for.

@@ -1,15 +1,15 @@
 //! Calls of the library: overloads, generic names, and what they stand for in a call.
 
+mod binding;
 mod generic;
 mod intrinsic;
 mod units;
 
 use super::object::function_target;
 use super::{Body, Operand};
-use crate::st::constant::Const;
-use crate::st::elementary::El;
-use crate::st::signature::{Bindings, PouId, Var};
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::signature::{PouId, Var};
+use crate::st::types::TypeId;
+use binding::Bound;
 use generic::Generic;
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, Argument, ArgumentKind, ExprKind as Written};
@@ -88,214 +88,6 @@ impl Body<'_, '_> {
         true
     }
 
-    /// What the generic names of a library function stand for with these arguments; `None` if they
-    /// do not fit.
-    fn bind(&mut self, function: PouId, given: &Given, want: Option<TypeId>) -> Option<Bound> {
-        let (operands, fixed) = (&given.operands[..], given.fixed);
-        let parameters = self.an.library_parameters(function);
-        let extensible = self.an.pragma(function, "extensible");
-        let mut bound = Bound::default();
-        let mut generics: Vec<(Symbol, Option<TypeId>)> = Vec::new();
-        if let Some(fixed) = fixed {
-            // The type in the name of the function is that of its first generic parameter.
-            let first = parameters.iter().find_map(|parameter| match parameter.ty {
-                ParameterType::Generic(name, class) => Some((name, class)),
-                ParameterType::OpenText { .. } | ParameterType::Written(_) => None,
-            });
-            if let Some((name, class)) = first {
-                let el = self.an.types.elementary(fixed);
-                let takes = el.map_or(class.takes_text(), |el| class.takes(el));
-                if !takes {
-                    return None;
-                }
-                if self.an.types.is_scalar(fixed) {
-                    generics.push((name, Some(fixed)));
-                }
-            }
-        }
-        for (index, (kind, operand)) in operands.iter().enumerate() {
-            let position = match kind {
-                ArgumentKind::Positional if extensible => index.min(parameters.len() - 1),
-                ArgumentKind::Positional => index,
-                ArgumentKind::Input(name)
-                | ArgumentKind::Output(name)
-                | ArgumentKind::NegatedOutput(name) => {
-                    let known = parameters.iter().position(|p| p.name == name.name);
-                    let more = || extensible && self.names_the_next(&parameters, index, name.name);
-                    known.or_else(|| more().then(|| parameters.len() - 1))?
-                }
-            };
-            let parameter = parameters.get(position)?;
-            bound.positions.push(position);
-            match &parameter.ty {
-                ParameterType::Generic(name, class) => {
-                    let known = generics.iter_mut().find(|(known, _)| known == name);
-                    let slot = match known {
-                        Some((_, slot)) => slot,
-                        None => {
-                            generics.push((*name, None));
-                            &mut generics.last_mut().expect("just pushed").1
-                        }
-                    };
-                    let before = *slot;
-                    let joined = self.join(before, operand, *class)?;
-                    if let (Some(fixed), Some((first, _))) = (fixed, generics.first())
-                        && first == name
-                        && joined != Some(fixed)
-                        && self.an.types.is_scalar(fixed)
-                    {
-                        return None;
-                    }
-                    let slot = generics.iter_mut().find(|(known, _)| known == name);
-                    slot.expect("found above").1 = joined;
-                }
-                ParameterType::OpenText { wide } => {
-                    let ty = self.an.types.strip(operand.ty);
-                    if !matches!(self.an.types.kind(ty), TypeKind::Text { wide: w, .. } if w == wide)
-                    {
-                        return None;
-                    }
-                    bound.bindings.open.push((parameter.name, ty));
-                }
-                ParameterType::Written(spec) => {
-                    let ty = self.an.library_type(function, *spec);
-                    if !self.fits(operand, ty) {
-                        return None;
-                    }
-                }
-            }
-        }
-        // Only by name can inputs be left out.
-        let by_position = operands
-            .iter()
-            .all(|(kind, _)| *kind == ArgumentKind::Positional);
-        if by_position && given.outputs.is_empty() && operands.len() < parameters.len() {
-            return None;
-        }
-        for (position, parameter) in parameters.iter().enumerate() {
-            // An argument says how long a string is.
-            let open = matches!(parameter.ty, ParameterType::OpenText { .. });
-            if open && !parameter.output && !bound.positions.contains(&position) {
-                return None;
-            }
-            if let ParameterType::Generic(name, class) = parameter.ty {
-                let ty = generics.iter().find(|(known, _)| *known == name);
-                let ty = ty.and_then(|(_, ty)| *ty);
-                let ty = ty.or_else(|| self.open_generic(class, operands, want))?;
-                if !bound
-                    .bindings
-                    .generics
-                    .iter()
-                    .any(|(known, _)| *known == name)
-                {
-                    bound.bindings.generics.push((name, ty));
-                }
-            }
-        }
-        Some(bound)
-    }
-
-    /// Whether a name goes on with the numbers in those of the parameters: IN3 after IN1 and IN2, where it
-    /// stands in their order.
-    fn names_the_next(&self, parameters: &[Parameter], index: usize, name: Symbol) -> bool {
-        let Some(last) = parameters.last() else {
-            return false;
-        };
-        let last_text = self.text(last.name);
-        let base = last_text.trim_end_matches(|c: char| c.is_ascii_digit());
-        let Ok(number) = last_text[base.len()..].parse::<usize>() else {
-            return false;
-        };
-        let next = (number + index).checked_sub(parameters.len() - 1);
-        next.is_some_and(|next| {
-            self.text(name)
-                .eq_ignore_ascii_case(&format!("{base}{next}"))
-        })
-    }
-
-    /// Whether a generic name takes a type that is not elementary.
-    fn takes_other(&self, class: Generic, ty: TypeId) -> bool {
-        let types = &self.an.types;
-        class == Generic::Any
-            || types.is_text(ty) && class.takes_text()
-            || types.enumeration(ty).is_some() && class.takes_enum()
-    }
-
-    /// The type of a generic name after one more argument. Literals leave it open.
-    pub(super) fn join(
-        &mut self,
-        known: Option<TypeId>,
-        operand: &Operand,
-        class: Generic,
-    ) -> Option<Option<TypeId>> {
-        if matches!(operand.ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL) {
-            let fits = match known.and_then(|ty| self.an.types.elementary(ty)) {
-                Some(el) => el.is_real() || operand.ty == TypeId::UNTYPED_INT,
-                None => class.takes_literal(operand.ty),
-            };
-            return fits.then_some(known);
-        }
-        let ty = self.an.types.strip(operand.ty);
-        let own = match self.an.types.elementary(ty) {
-            Some(el) => class.takes(el).then(|| TypeId::of(el))?,
-            None => self.takes_other(class, ty).then_some(ty)?,
-        };
-        let Some(known) = known else {
-            return Some(Some(own));
-        };
-        if known == own {
-            return Some(Some(own));
-        }
-        match (
-            self.an.types.elementary(known),
-            self.an.types.elementary(own),
-        ) {
-            (Some(a), Some(b)) => {
-                let common = a.common(b).filter(|el| class.takes(*el))?;
-                Some(Some(TypeId::of(common)))
-            }
-            _ => match (self.an.types.kind(known), self.an.types.kind(own)) {
-                (TypeKind::Text { wide: a, length: m }, TypeKind::Text { wide: b, length: n })
-                    if a == b =>
-                {
-                    Some(Some(if m >= n { known } else { own }))
-                }
-                _ => None,
-            },
-        }
-    }
-
-    /// The type of a generic name with literals only: the wanted one, or that of the literals.
-    pub(super) fn open_generic(
-        &mut self,
-        class: Generic,
-        operands: &[(ArgumentKind, Operand)],
-        want: Option<TypeId>,
-    ) -> Option<TypeId> {
-        let fraction = operands.iter().any(|(_, o)| o.ty == TypeId::UNTYPED_REAL);
-        if let Some(el) = want.and_then(|ty| self.an.types.elementary(ty))
-            && class.takes(el)
-            && (el.is_real() || !fraction)
-            && (el.is_num() || el.is_bits())
-        {
-            return Some(TypeId::of(el));
-        }
-        if class == Generic::Real || (fraction && class.takes(El::Real)) {
-            return Some(TypeId::of(El::Real));
-        }
-        let untyped = operands.iter().find(|(_, o)| o.ty == TypeId::UNTYPED_INT);
-        let settled = untyped.map(|(_, operand)| self.settle(operand))?;
-        let el = self.an.types.elementary(settled)?;
-        if class.takes(el) {
-            return Some(settled);
-        }
-        let value = untyped
-            .and_then(|(_, o)| o.as_const())
-            .and_then(Const::as_int)?;
-        let fits = |el: &&El| class.takes(**el) && !el.is_real() && el.range().1 >= value;
-        El::ALL.iter().find(fits).map(|el| TypeId::of(*el))
-    }
-
     fn bound_call(
         &mut self,
         function: PouId,
@@ -304,60 +96,59 @@ impl Body<'_, '_> {
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
-        let Given {
-            operands,
-            outputs,
-            eno,
-            ..
-        } = given;
         if let Some(name) = self.an.intrinsic(function) {
-            let mut ordered: Vec<(usize, Operand)> = bound
-                .positions
-                .iter()
-                .copied()
-                .zip(operands.into_iter().map(|(_, operand)| operand))
-                .collect();
-            ordered.sort_by_key(|(position, _)| *position);
             let name = name.to_owned();
-            let operands = self.typed_operands(function, ordered);
-            let result = self.an.library_result(function, &bound.bindings).or(want);
-            // Of these only MUX can fail.
-            if let (Some(eno), false) = (eno, name == "mux") {
-                let place = self.temporary("ENO", TypeId::BOOL);
-                self.eno_to(false, place, &eno);
-            }
-            return self.intrinsic(&name, &bound.bindings, operands, eno, range, result);
+            return self.intrinsic_call(function, &name, bound, given, range, want);
         }
-        if operands.len()
-            > bound
-                .positions
-                .iter()
-                .max()
-                .map_or(0, |position| position + 1)
-        {
-            if eno.is_some() {
+        let named = bound.positions.iter().max().map_or(0, |last| last + 1);
+        if given.operands.len() > named {
+            if given.eno.is_some() {
                 let message =
                     "ENO of a function with more inputs than it names is not compiled yet";
                 return self.error(Message::E2010, range, message);
             }
-            return self.folded_call(function, operands, range, want);
+            return self.folded_call(function, given.operands, range, want);
         }
         let instance = self.an.instance(function, bound.bindings);
         let vars: Vec<Var> = self.an.parameters(instance);
-        let arguments = bound
-            .positions
-            .iter()
-            .zip(operands)
-            .map(|(position, (_, operand))| (vars[*position].clone(), operand))
-            .collect();
-        let outputs = outputs
-            .into_iter()
-            .filter_map(|(name, argument)| {
-                let var = vars.iter().find(|var| var.name == name.name)?;
-                Some((var.clone(), argument))
-            })
-            .collect();
-        self.finish_call(function_target(instance), arguments, outputs, eno, range)
+        let operands = bound.positions.iter().zip(given.operands);
+        let arguments = operands.map(|(position, (_, operand))| (vars[*position].clone(), operand));
+        let outputs = given.outputs.into_iter().filter_map(|(name, argument)| {
+            let var = vars.iter().find(|var| var.name == name.name)?;
+            Some((var.clone(), argument))
+        });
+        let (arguments, outputs) = (arguments.collect(), outputs.collect());
+        self.finish_call(
+            function_target(instance),
+            arguments,
+            outputs,
+            given.eno,
+            range,
+        )
+    }
+
+    /// A call of what the compiler knows, with its operands in the order of the parameters.
+    fn intrinsic_call(
+        &mut self,
+        function: PouId,
+        name: &str,
+        bound: Bound,
+        given: Given,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        let operands = given.operands.into_iter().map(|(_, operand)| operand);
+        let mut ordered: Vec<(usize, Operand)> =
+            bound.positions.into_iter().zip(operands).collect();
+        ordered.sort_by_key(|(position, _)| *position);
+        let operands = self.typed_operands(function, ordered);
+        let result = self.an.library_result(function, &bound.bindings).or(want);
+        // Of these only MUX can fail.
+        if let (Some(eno), false) = (given.eno, name == "mux") {
+            let place = self.temporary("ENO", TypeId::BOOL);
+            self.eno_to(false, place, &eno);
+        }
+        self.intrinsic(name, &bound.bindings, operands, given.eno, range, result)
     }
 
     /// Operands of an intrinsic in the types that the library writes for them.
@@ -482,33 +273,6 @@ impl Body<'_, '_> {
         given
     }
 
-    /// Whether an operand becomes one of a type without being asked.
-    pub(super) fn fits(&self, operand: &Operand, to: TypeId) -> bool {
-        let types = &self.an.types;
-        if types.strip(operand.ty) == types.strip(to) {
-            return true;
-        }
-        match (operand.ty, operand.as_const(), types.elementary(to)) {
-            (TypeId::UNTYPED_INT, Some(Const::Int(value)), Some(el)) => {
-                if el.is_real() {
-                    return true;
-                }
-                let (low, high) = el.range();
-                (el.is_int() || el.is_bits()) && (low..=high).contains(value)
-            }
-            (TypeId::UNTYPED_REAL, _, Some(el)) => el.is_real(),
-            (_, Some(Const::Text(units)), Some(El::Char | El::Wchar)) => units.len() == 1,
-            (_, _, Some(el)) => types
-                .elementary(operand.ty)
-                .is_some_and(|own| own.widens_to(el)),
-            (_, _, None) => match (types.base(operand.ty), types.base(to)) {
-                (TypeKind::Text { wide: a, .. }, TypeKind::Text { wide: b, .. }) => a == b,
-                (TypeKind::Null, TypeKind::Reference(..) | TypeKind::Interface(_)) => true,
-                _ => false,
-            },
-        }
-    }
-
     /// An operand as one of a type; texts keep their length.
     pub(super) fn as_type(&mut self, operand: Operand, ty: TypeId) -> Operand {
         if !self.an.types.is_scalar(ty) {
@@ -555,14 +319,6 @@ impl Given {
     pub(super) fn has_errors(&self) -> bool {
         self.operands.iter().any(|(_, operand)| operand.is_error())
     }
-}
-
-/// What the arguments of a library call mean.
-#[derive(Debug, Default)]
-struct Bound {
-    bindings: Bindings,
-    /// The parameter of each argument.
-    positions: Vec<usize>,
 }
 
 /// A parameter of a library function.
