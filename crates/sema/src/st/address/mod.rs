@@ -120,8 +120,8 @@ impl Analysis<'_> {
             }
             (_, &[number]) => u64::from(number) * bits,
             _ => {
-                let message = "an address of this many numbers is not compiled".to_owned();
-                return Err((Code::E2010, message));
+                let message = "an address has one number (%IW3), or a byte and a bit (%IX0.5)";
+                return Err((Code::E2003, message.to_owned()));
             }
         };
         Ok(Some(Address { area, first, bits }))

@@ -2,6 +2,7 @@
 
 use super::Address;
 use super::layout::Class;
+use crate::hir::code::{Init, PathStep};
 use crate::hir::{self, Step, Type};
 use crate::st::analysis::Analysis;
 use crate::st::signature::{Spot, Storage, UnitId};
@@ -42,50 +43,33 @@ impl Analysis<'_> {
         Some(Spot { tag, steps })
     }
 
-    /// Says that the value at an address starts with something else than 0.
-    pub(crate) fn set_initial(&mut self, address: Address, init: hir::InitId, span: Span) {
-        let Some(cluster) = self.cluster_of(address) else {
+    /// Says what the value of a type at an address starts with.
+    pub(crate) fn set_initial(
+        &mut self,
+        address: Address,
+        ty: TypeId,
+        init: hir::InitId,
+        span: Span,
+    ) {
+        // What has no place there was reported where it is declared.
+        let Some(spot) = self.spot(address, ty) else {
             return;
         };
-        let (tag, start) = (cluster.tag, cluster.first);
-        match (cluster.plain, self.hir.inits.get(init)) {
-            (Some(Class::Whole(whole)), hir::code::Init::Bits(bits)) => {
-                let bits = *bits;
-                let part = [false, true].into_iter().find_map(|real| {
-                    self.part_of(whole, address.first - start, address.bits, real)
-                });
-                let spot = part.map(|steps| Spot { tag, steps });
-                match spot.and_then(|spot| crate::st::config::place_of(&spot)) {
-                    Some(place) => self.hir.tags[tag.index()].initial.push((place.path, bits)),
-                    None => self.no_initial(span),
-                }
-                return;
+        let whole = spot.steps.is_empty();
+        let value = self.hir.inits.get(init).clone();
+        let tag = &mut self.hir.tags[spot.tag.index()];
+        match value {
+            _ if whole => {
+                tag.init = Some(init);
+                tag.initial.clear();
             }
-            (Some(_), _) => {
-                self.hir.tags[tag.index()].init = Some(init);
-                return;
+            Init::Zero => tag.initial.extend(leaves(&spot.steps, 0)),
+            Init::Bits(bits) => tag.initial.extend(leaves(&spot.steps, bits)),
+            Init::Address(_) | Init::Struct(_) | Init::Array(_) => {
+                let message = "a reference at an address that others overlap starts as NULL";
+                self.error(Code::E2008, span, message);
             }
-            (None, _) => {}
         }
-        let hir::code::Init::Bits(bits) = *self.hir.inits.get(init) else {
-            return self.no_initial(span);
-        };
-        let byte = ((address.first - start) / 8) as u32;
-        let initial = &mut self.hir.tags[tag.index()].initial;
-        if address.bits == 1 {
-            let bit = Step::Bit((address.first % 8) as u32);
-            initial.push((vec![Step::Index(byte), bit], bits));
-            return;
-        }
-        for index in 0..(address.bits / 8) as u32 {
-            let value = (bits >> (8 * index)) & 0xFF;
-            initial.push((vec![Step::Index(byte + index)], value));
-        }
-    }
-
-    fn no_initial(&mut self, span: Span) {
-        let message = "this initial value at addresses that overlap is not compiled yet";
-        self.error(Code::E2010, span, message);
     }
 
     /// Checks that a type fits an address.
@@ -132,9 +116,38 @@ impl Analysis<'_> {
                 };
                 if let Some(init) = init {
                     let span = self.span(self.pous[index].unit, var.range);
-                    self.set_initial(address, init, span);
+                    self.set_initial(address, var.ty, init, span);
                 }
             }
         }
     }
+}
+
+/// The leaves that hold a number, which may be some bits of one or several bytes.
+fn leaves(steps: &[PathStep], value: u64) -> Vec<(Vec<Step>, u64)> {
+    let mut path: Vec<Step> = Vec::new();
+    for step in steps {
+        match *step {
+            PathStep::Field(field) => path.push(Step::Field(field)),
+            PathStep::Index(index) => path.push(Step::Index(index)),
+            PathStep::Bits { first, count } => {
+                let bits = (0..count).map(|bit| (Step::Bit(first + bit), (value >> bit) & 1));
+                return split(&path, bits);
+            }
+            PathStep::Bytes { offset, ty } => {
+                let bytes = (0..ty.bits() / 8)
+                    .map(|byte| (Step::Index(offset + byte), (value >> (8 * byte)) & 0xFF));
+                return split(&path, bytes);
+            }
+            PathStep::IndexBy { .. } | PathStep::Character { .. } => {
+                panic!("addresses are constant")
+            }
+        }
+    }
+    vec![(path, value)]
+}
+
+fn split(path: &[Step], parts: impl Iterator<Item = (Step, u64)>) -> Vec<(Vec<Step>, u64)> {
+    let parts = parts.map(|(step, value)| ([path, &[step]].concat(), value));
+    parts.collect()
 }

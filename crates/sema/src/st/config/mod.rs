@@ -8,6 +8,7 @@ use super::analysis::Analysis;
 use super::body::Connections;
 use super::signature::{Def, PouId, Storage, UnitId, Var};
 use super::types::{TypeId, TypeKind};
+use crate::hir::code::Init;
 use crate::hir::{IoPoint, Place, TagId, Task, Trigger};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, Area, Declarations, PouKind, ProgramElement, SectionKind};
@@ -206,7 +207,7 @@ impl Analysis<'_> {
     fn single(&mut self, unit: UnitId, value: st::Id<st::Expr>) -> Option<Place> {
         let found = self.outside_path(unit, value)?;
         if self.types.strip(found.ty) == TypeId::BOOL {
-            return Some(found.place);
+            return found.place;
         }
         let span = self.span(unit, self.unit(unit).arena[value].range);
         let message = format!("SINGLE is a BOOL, not {}", self.type_name(found.ty));
@@ -323,54 +324,82 @@ impl Analysis<'_> {
             let ProgramElement::Task { block, task } = *element else {
                 continue;
             };
-            let Some(index) = self.task_named(unit, task, tasks) else {
-                continue;
-            };
-            let written = self.unit(unit).arena[block];
-            let span = self.span(unit, written.range);
-            let start = Found {
-                place: Place::whole(tag),
-                ty: self.types.intern(TypeKind::Instance(pou)),
-                partly: false,
-            };
-            let st::ExprKind::Name(name) = written.kind else {
-                self.unsupported(unit, written.range, "a task for a part of a block");
-                continue;
-            };
-            let found = self.path_member(start, name);
-            let block = found.and_then(|found| Some((found.place, self.types.instance(found.ty)?)));
-            let Some((place, block)) = block else {
-                let message = format!("`{}` is no block of the program", self.text(name));
-                self.error(Message::E1018, span, message);
-                continue;
-            };
-            if self.calls_block(pou, name) {
-                let text = self.text(name);
-                let message = format!("`{text}` has a task of its own, but its program calls it");
-                self.error(Message::E6043, span, message);
-                continue;
+            if let Some(index) = self.task_named(unit, task, tasks)
+                && let Some(call) = self.own_task(unit, pou, tag, block)
+            {
+                self.hir.tasks[index].calls.push(call);
             }
-            let in_out = self.call_shape(block).refs.first().copied();
-            if let Some(in_out) = in_out {
-                let in_out = self.text(self.pou(block).vars[in_out].name);
-                let text = self.text(name);
-                let message =
-                    format!("a task calls `{text}`, so in-out `{in_out}` has no argument");
-                self.error(Message::E3016, span, message);
-                continue;
-            }
-            let name = format!("{}.{}", self.text(program.name.name), self.text(name));
-            let call = self.block_run(block, &place, &name, unit);
-            self.hir.tasks[index].calls.push(call);
         }
     }
 
-    /// Whether the body of a program calls one of its instances.
-    fn calls_block(&self, program: PouId, block: Symbol) -> bool {
-        let arena = &self.unit(self.pou(program).unit).arena;
+    /// What a task of its own runs for a block.
+    fn own_task(
+        &mut self,
+        unit: UnitId,
+        pou: PouId,
+        tag: TagId,
+        block: st::Id<st::Expr>,
+    ) -> Option<crate::hir::PouId> {
+        let arena = &self.unit(unit).arena;
+        let span = self.span(unit, arena[block].range);
+        let names = names_of(arena, block).unwrap_or_default();
+        let text: Vec<&str> = names.iter().map(|name| self.text(*name)).collect();
+        let text = text.join(".");
+        let found = self.inside_path(unit, pou, tag, block);
+        let found = found
+            .and_then(|found| Some((found.place?, self.types.instance(found.ty)?)))
+            .filter(|(_, block)| self.pou(*block).kind == PouKind::FunctionBlock);
+        let Some((place, called)) = found else {
+            let message = format!("`{text}` is no block of the program");
+            self.error(Message::E1018, span, message);
+            return None;
+        };
+        if self.calls_block(pou, &names) {
+            let message = format!("`{text}` has a task of its own, but its program calls it");
+            self.error(Message::E6043, span, message);
+            return None;
+        }
+        if let Some(&in_out) = self.call_shape(called).refs.first() {
+            let in_out = self.text(self.pou(called).vars[in_out].name);
+            let message = format!("a task calls `{text}`, so in-out `{in_out}` has no argument");
+            self.error(Message::E3016, span, message);
+            return None;
+        }
+        let name = self.hir.display(&place);
+        Some(self.block_run(called, &place, &name, unit))
+    }
+
+    /// Whether a program calls a block in it, or a block on the way there does.
+    fn calls_block(&self, program: PouId, names: &[Symbol]) -> bool {
+        let (mut home, mut rest) = (Some(program), names);
+        while let (Some(pou), Some((first, inner))) = (home, rest.split_first()) {
+            let lineage = self.lineage(pou);
+            if lineage.iter().any(|base| self.calls_path(*base, rest)) {
+                return true;
+            }
+            let mut vars = lineage
+                .iter()
+                .filter_map(|base| self.pou(*base).var(*first));
+            home = vars.next().and_then(|var| self.instances_in(var.ty));
+            rest = inner;
+        }
+        false
+    }
+
+    /// What a variable is an instance of, or its elements.
+    fn instances_in(&self, ty: TypeId) -> Option<PouId> {
+        if let TypeKind::Array { element, .. } = self.types.base(ty) {
+            return self.types.instance(*element);
+        }
+        self.types.instance(ty)
+    }
+
+    /// Whether a unit calls what it has at a path, with whatever subscripts.
+    fn calls_path(&self, pou: PouId, path: &[Symbol]) -> bool {
+        let arena = &self.unit(self.pou(pou).unit).arena;
         arena.all::<st::Expr>().iter().any(|expr| {
             matches!(expr.kind, st::ExprKind::Call { callee, .. }
-                if arena[callee].kind == st::ExprKind::Name(block))
+                if names_of(arena, callee).is_some_and(|called| called == path))
         })
     }
 
@@ -382,7 +411,24 @@ impl Analysis<'_> {
             };
             if self.same_type(unit, access.ty, found.ty) {
                 let name = self.text(access.name.name).to_owned();
-                self.add_name(unit, access.name, name, found.place);
+                self.add_found(unit, access, name, found.place);
+            }
+        }
+    }
+
+    fn add_found(
+        &mut self,
+        unit: UnitId,
+        access: &st::AccessDecl,
+        name: String,
+        place: Option<Place>,
+    ) {
+        match place {
+            Some(place) => self.add_name(unit, access.name, name, place),
+            None => {
+                let range = self.unit(unit).arena[access.path].range;
+                let what = "a path to a number of several bytes that others share";
+                self.unsupported(unit, range, what);
             }
         }
     }
@@ -421,11 +467,7 @@ impl Analysis<'_> {
             };
             for access in &arena[accesses] {
                 let found = arena[access.path].kind.name().and_then(|name| {
-                    let start = Found {
-                        place: Place::whole(tag),
-                        ty: self.types.intern(TypeKind::Instance(program)),
-                        partly: false,
-                    };
+                    let start = self.found_program(program, tag);
                     self.path_member(start, name)
                 });
                 let Some(found) = found else {
@@ -436,7 +478,7 @@ impl Analysis<'_> {
                 };
                 if self.same_type(unit, access.ty, found.ty) {
                     let name = self.text(access.name.name).to_owned();
-                    self.add_name(unit, access.name, name, found.place);
+                    self.add_found(unit, access, name, found.place);
                 }
             }
         }
@@ -471,7 +513,7 @@ impl Analysis<'_> {
         let span = self.span(unit, self.unit(unit).arena[location].range);
         let address = self.address(unit, location)?;
         if !self.fits_address(unit, location, address, found.ty) {
-            return Some(found.place);
+            return found.place;
         }
         if !found.partly {
             let message = "the declaration of this variable has no address with `*`";
@@ -482,10 +524,14 @@ impl Analysis<'_> {
         let taken = self.hir.names.iter().any(|(name, _)| *name == text);
         if taken || self.is_used(address) {
             let range = self.unit(unit).arena[location].range;
-            self.unsupported(unit, range, "a place that is used by its address as well");
-            return Some(found.place);
+            self.unsupported(
+                unit,
+                range,
+                "an address for this variable that the program names elsewhere too",
+            );
+            return found.place;
         }
-        let place = found.place;
+        let place = found.place?;
         self.hir.names.push((text.clone(), place.clone()));
         let point = IoPoint {
             name: text,
@@ -499,20 +545,36 @@ impl Analysis<'_> {
         Some(place)
     }
 
-    /// An initial value for one instance: its numbers take the place of those that its type gives.
+    /// An initial value for one instance, in place of the one that its type gives.
     fn instance_initial(&mut self, unit: UnitId, initial: st::Id<st::Expr>, found: &Found) {
         let scope = self.global_scope(unit);
         let value = self.value_of(scope, initial, found.ty);
-        let storage = self.storage(found.ty);
-        let Some(leaves) = self.init_leaves(value, storage) else {
-            let range = self.unit(unit).arena[initial].range;
-            self.unsupported(unit, range, "this initial value in VAR_CONFIG");
-            return;
-        };
-        let place = &found.place;
-        let initial = &mut self.hir.tags[place.tag.index()].initial;
-        for (path, bits) in leaves {
-            initial.push(([place.path.clone(), path].concat(), bits));
+        let value = value.unwrap_or_else(|| self.init(Init::Zero));
+        if let Some(address) = found.address {
+            let span = self.span(unit, self.unit(unit).arena[initial].range);
+            return self.set_initial(address, found.ty, value, span);
         }
+        if let Some(place) = &found.place {
+            let tag = place.tag.index();
+            let init = self.with_part(self.hir.tags[tag].init, &place.path, value);
+            self.hir.tags[tag].init = Some(init);
+        }
+    }
+}
+
+/// The names on a path, without subscripts; `None` if it is no such path. Recursion is bounded by the
+/// depth of expressions.
+fn names_of(arena: &st::Arena, id: st::Id<st::Expr>) -> Option<Vec<Symbol>> {
+    let written = arena[id].kind;
+    if let st::ExprKind::Name(name) = written {
+        Some(vec![name])
+    } else if let st::ExprKind::Member { base, member } = written {
+        let mut names = names_of(arena, base)?;
+        names.push(member.name);
+        Some(names)
+    } else if let st::ExprKind::Index { base, .. } = written {
+        names_of(arena, base)
+    } else {
+        (written == st::ExprKind::This).then(Vec::new)
     }
 }

@@ -1,7 +1,7 @@
 //! Paths from outside of units: `resource.program.block.variable`, of VAR_ACCESS, VAR_CONFIG, tasks.
 
 use crate::hir::code::PathStep;
-use crate::hir::{Place, Step};
+use crate::hir::{Place, Step, TagId};
 use crate::st::address::Address;
 use crate::st::analysis::Analysis;
 use crate::st::signature::{Def, PouId, Spot, Storage, UnitId};
@@ -13,7 +13,10 @@ use iecc_diag::Code;
 /// What a path leads to.
 #[derive(Debug, Clone)]
 pub(crate) struct Found {
-    pub place: Place,
+    /// `None` for a number of several bytes that others share.
+    pub place: Option<Place>,
+    /// Where it lies, if it is a variable at an address.
+    pub address: Option<Address>,
     pub ty: TypeId,
     /// Whether VAR_CONFIG gives its address.
     pub partly: bool,
@@ -33,11 +36,7 @@ impl Analysis<'_> {
         if let ExprKind::Direct(_) = self.unit(unit).arena[id].kind {
             let address = self.address(unit, id)?;
             let ty = address.plain_type();
-            let found = self.found_at(address, ty);
-            if found.is_none() {
-                self.unsupported(unit, range, "this address here");
-            }
-            return found;
+            return self.found_at(address, ty);
         }
         let mut parts = Vec::new();
         let found = self
@@ -54,10 +53,35 @@ impl Analysis<'_> {
     fn found_at(&mut self, address: Address, ty: TypeId) -> Option<Found> {
         let spot = self.spot(address, ty)?;
         Some(Found {
-            place: place_of(&spot)?,
+            place: place_of(&spot),
+            address: Some(address),
             ty,
             partly: false,
         })
+    }
+
+    /// Follows a path that begins in a program.
+    pub(super) fn inside_path(
+        &mut self,
+        unit: UnitId,
+        program: PouId,
+        tag: TagId,
+        path: st::Id<st::Expr>,
+    ) -> Option<Found> {
+        let mut parts = Vec::new();
+        self.written_parts(unit, path, &mut parts)?;
+        let start = self.found_program(program, tag);
+        self.follow_rest(unit, start, &parts)
+    }
+
+    /// The instance of a program.
+    pub(super) fn found_program(&mut self, program: PouId, tag: TagId) -> Found {
+        Found {
+            place: Some(Place::whole(tag)),
+            address: None,
+            ty: self.types.intern(TypeKind::Instance(program)),
+            partly: false,
+        }
     }
 
     /// Recursion is bounded by the depth of expressions.
@@ -134,11 +158,7 @@ impl Analysis<'_> {
     fn path_head(&mut self, unit: UnitId, name: Symbol) -> Option<Found> {
         let instance = self.program_instances.iter().find(|one| one.0 == name);
         if let Some(&(_, program, tag)) = instance {
-            return Some(Found {
-                place: Place::whole(tag),
-                ty: self.types.intern(TypeKind::Instance(program)),
-                partly: false,
-            });
+            return Some(self.found_program(program, tag));
         }
         let namespace = self.units[unit.index()].namespace;
         let [Def::Global(global)] = *self.lookup(namespace, name) else {
@@ -147,7 +167,8 @@ impl Analysis<'_> {
         let global = self.global(global);
         let (ty, spot) = (global.ty, global.spot.clone()?);
         Some(Found {
-            place: place_of(&spot)?,
+            place: place_of(&spot),
+            address: None,
             ty,
             partly: false,
         })
@@ -173,12 +194,13 @@ impl Analysis<'_> {
                 }
                 let member = &def.members[position as usize];
                 Some(Found {
-                    place: at.place.step(Step::Field(position)),
+                    place: Some(at.place?.step(Step::Field(position))),
+                    address: None,
                     ty: member.ty,
                     partly: member.partly.is_some(),
                 })
             }
-            Parts::Variables(pou) => self.path_variable(at.place, pou, name),
+            Parts::Variables(pou) => self.path_variable(at.place?, pou, name),
             Parts::Elements { .. } | Parts::None => None,
         }
     }
@@ -188,7 +210,8 @@ impl Analysis<'_> {
             if let Some(var) = self.pou(pou).var(name).cloned() {
                 return match var.storage {
                     Storage::Field(field) => Some(Found {
-                        place: place.step(Step::Field(field)),
+                        place: Some(place.step(Step::Field(field))),
+                        address: None,
                         ty: var.ty,
                         partly: var.partly.is_some(),
                     }),
@@ -227,9 +250,15 @@ impl Analysis<'_> {
             if !(low..=high).contains(&index) {
                 return None;
             }
-            at.place = at.place.step(Step::Index((index - low) as u32));
+            at.place = at
+                .place
+                .map(|place| place.step(Step::Index((index - low) as u32)));
         }
-        Some(Found { ty: element, ..at })
+        Some(Found {
+            ty: element,
+            address: None,
+            ..at
+        })
     }
 }
 

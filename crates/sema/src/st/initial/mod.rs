@@ -2,7 +2,7 @@
 
 mod array;
 mod evaluate;
-mod leaves;
+mod part;
 
 pub(crate) use evaluate::Computed;
 pub use evaluate::Evaluator;

@@ -120,7 +120,7 @@ impl Analysis<'_> {
             return;
         };
         if let (Some(init), Some(address)) = (init, self.address(global.unit, location)) {
-            self.set_initial(address, init, global.span);
+            self.set_initial(address, global.ty, init, global.span);
         }
     }
 
@@ -143,7 +143,12 @@ impl Analysis<'_> {
         }
         if partly.is_some() {
             let range = self.unit(global.unit).arena[location].range;
-            self.unsupported(global.unit, range, "a global variable at `*`");
+            self.foreign(
+                global.unit,
+                range,
+                "a global variable at an address with `*`",
+            );
+            return None;
         }
         let address = self.address(global.unit, location)?;
         if !self.fits_address(global.unit, location, address, global.ty) {
@@ -186,7 +191,7 @@ impl Analysis<'_> {
         };
         if let Some(init) = init {
             let span = self.span(unit, decl.range);
-            self.set_initial(address, init, span);
+            self.set_initial(address, ty, init, span);
         }
     }
 
