@@ -1,7 +1,7 @@
 //! Whole runs as `iecc run` makes them, on every engine, into rows that a test can compare.
 
 use iecc_diag::{Diagnostics, render_text};
-use iecc_driver::run::{Request, Schedule, Session, Stimulus, Trace};
+use iecc_driver::run::{CsvTrace, Request, Schedule, Session, Stimulus, Trace};
 use iecc_driver::{EngineKind, FrontOptions, Sources, compile};
 use iecc_ir::{Module, verify};
 use iecc_jit::Jit;
@@ -84,7 +84,8 @@ pub fn compiled(path: &Path, options: &FrontOptions) -> Module {
     module.unwrap_or_else(|| panic!("{}", messages(&map, &diagnostics)))
 }
 
-fn messages(map: &SourceMap, diagnostics: &Diagnostics) -> String {
+/// Messages as users see them.
+pub fn messages(map: &SourceMap, diagnostics: &Diagnostics) -> String {
     let texts = diagnostics.iter().map(|d| render_text(map, d, false));
     texts.collect::<Vec<_>>().join("\n")
 }
@@ -145,4 +146,28 @@ pub fn rows(session: &Session, engine: &mut dyn Engine, schedule: Schedule) -> R
     let result = session.run(engine, schedule, &mut recorder, &mut |_| {});
     result.unwrap_or_else(|error| panic!("{error:?}"));
     recorder.rows
+}
+
+/// The changes of a run with a stimulus (CSV), as `iecc run` writes them.
+///
+/// # Panics
+/// If the stimulus does not fit, or a scan is abandoned.
+pub fn trace_of_changes(
+    module: Module,
+    stimulus: &str,
+    engine: EngineKind,
+    schedule: Schedule,
+) -> String {
+    let (module, session) = opened(module, stimulus, &[]);
+    let mut engine = engine
+        .start(&module, schedule.period_ns())
+        .unwrap_or_else(|found| panic!("{found:?}"));
+    let mut bytes = Vec::new();
+    let mut trace = CsvTrace::new(&mut bytes, session.columns(), schedule.unit(), true)
+        .expect("writing to memory");
+    session
+        .run(engine.as_mut(), schedule, &mut trace, &mut |_| {})
+        .unwrap_or_else(|error| panic!("{error:?}"));
+    trace.finish().expect("writing to memory");
+    String::from_utf8(bytes).expect("UTF-8")
 }

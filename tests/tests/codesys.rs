@@ -1,17 +1,14 @@
 //! The dialect of CODESYS and TwinCAT over several files: the project of the example runs as it was
 //! worked out by hand, is refused without the dialect, and SIZEOF is the layout of the engines.
-#![expect(
-    clippy::disallowed_methods,
-    reason = "tests read files and run programs"
-)]
 
-use iecc_diag::{Code, Diagnostics, render_text};
-use iecc_driver::run::{CsvTrace, Request, Schedule, Session, Stimulus};
+use iecc_diag::{Code, Diagnostics};
+use iecc_driver::run::Schedule;
 use iecc_driver::{EngineKind, Found, FrontOptions, Sources, compile, find};
 use iecc_grammar::st::Dialect;
 use iecc_ir::{Layout, MemType, Module, Region};
 use iecc_source::SourceMap;
-use std::path::{Path, PathBuf};
+use iecc_tests::examples::{example, example_text};
+use iecc_tests::runs::{messages, trace_of_changes};
 
 const ENGINES: [EngineKind; 5] = [
     EngineKind::Interp,
@@ -21,26 +18,11 @@ const ENGINES: [EngineKind; 5] = [
     EngineKind::Jit,
 ];
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/tank")
-}
-
-fn text_of(name: &str) -> String {
-    let path = folder().join(name);
-    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
-
-fn said(map: &SourceMap, diagnostics: &Diagnostics) -> String {
-    let said = diagnostics.iter();
-    let said: Vec<String> = said.map(|said| render_text(map, said, false)).collect();
-    said.join("\n")
-}
-
 /// What the project of the example is compiled to.
 fn compiled(dialect: Option<Dialect>) -> (Option<Module>, SourceMap, Diagnostics) {
     let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
-    let Some(Found::Project(project)) = find(&mut map, &[folder()], &mut diagnostics) else {
-        panic!("{}", said(&map, &diagnostics));
+    let Some(Found::Project(project)) = find(&mut map, &[example("tank")], &mut diagnostics) else {
+        panic!("{}", messages(&map, &diagnostics));
     };
     let mut options = project.options.clone();
     options.dialect = dialect.unwrap_or(options.dialect);
@@ -51,35 +33,21 @@ fn compiled(dialect: Option<Dialect>) -> (Option<Module>, SourceMap, Diagnostics
 }
 
 fn trace(engine: EngineKind) -> String {
-    let (module, mut map, mut diagnostics) = compiled(None);
-    assert!(diagnostics.is_empty(), "{}", said(&map, &diagnostics));
-    let mut module = module.expect("no errors");
-    let file = map.add("stimulus.csv", text_of("stimulus.csv"));
-    let stimulus = Stimulus::parse(file, map.file(file).text(), &mut diagnostics);
-    let request = Request {
-        watches: &[],
-        stimulus: stimulus.as_ref(),
-    };
-    let session = Session::prepare(&mut module, &request, &mut diagnostics);
-    assert!(diagnostics.is_empty(), "{}", said(&map, &diagnostics));
-    let (session, mut bytes) = (session.expect("no errors"), Vec::new());
+    let (module, map, diagnostics) = compiled(None);
+    assert!(diagnostics.is_empty(), "{}", messages(&map, &diagnostics));
     let schedule = Schedule::for_duration(10_000_000, 2_300_000_000).expect("in range");
-    let mut engine = engine
-        .start(&module, schedule.period_ns())
-        .expect("the engine starts");
-    let mut trace = CsvTrace::new(&mut bytes, session.columns(), schedule.unit(), true)
-        .expect("writing to memory");
-    session
-        .run(engine.as_mut(), schedule, &mut trace, &mut |_| {})
-        .expect("no fault");
-    trace.finish().expect("writing to memory");
-    String::from_utf8(bytes).expect("UTF-8")
+    let stimulus = example_text("tank/stimulus.csv");
+    trace_of_changes(module.expect("no errors"), &stimulus, engine, schedule)
 }
 
 #[test]
 fn the_tank_runs_as_it_was_worked_out() {
     for engine in ENGINES {
-        assert_eq!(trace(engine), text_of("expected.csv"), "{engine:?}");
+        assert_eq!(
+            trace(engine),
+            example_text("tank/expected.csv"),
+            "{engine:?}"
+        );
     }
 }
 
@@ -89,7 +57,7 @@ fn the_tank_is_refused_without_the_dialect() {
     assert!(module.is_none());
     let named = diagnostics.iter().filter(|said| said.code == Code::E8001);
     let notes: Vec<_> = named.map(|said| said.notes.join(" ")).collect();
-    assert!(notes.len() > 10, "{}", said(&map, &diagnostics));
+    assert!(notes.len() > 10, "{}", messages(&map, &diagnostics));
     assert!(notes.iter().all(|note| note.contains("--dialect codesys")));
 }
 
@@ -103,7 +71,7 @@ fn module(text: &str) -> Module {
         ..FrontOptions::default()
     };
     let module = compile(&map, &sources, &options, &mut diagnostics);
-    module.unwrap_or_else(|| panic!("{}", said(&map, &diagnostics)))
+    module.unwrap_or_else(|| panic!("{}", messages(&map, &diagnostics)))
 }
 
 /// Every variable has the size of an array beside it, which SIZEOF of the variable made.

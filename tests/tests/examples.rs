@@ -5,28 +5,21 @@
 )]
 
 use iecc_diag::Diagnostics;
-use iecc_driver::run::{CsvTrace, Request, Schedule, Session, Stimulus};
+use iecc_driver::run::{Schedule, Stimulus};
 use iecc_driver::{
     EngineKind, FrontOptions, Init, Replay, Sources, TimerBase, VerilogRequest, build_verilog,
     compile, load, write_artifacts,
 };
 use iecc_ir::Module;
 use iecc_source::SourceMap;
+use iecc_tests::examples::{example, example_text};
+use iecc_tests::runs::trace_of_changes;
+use iecc_tests::tools::printed;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
+use std::process::{Command, Stdio};
 
 const ENGINES: [EngineKind; 3] = [EngineKind::Interp, EngineKind::Jit, EngineKind::Verilog];
-
-fn example(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../examples")
-        .join(path)
-}
-
-fn text_of(path: &str) -> String {
-    fs::read_to_string(example(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
-}
 
 /// The module of a program that gives no message at all.
 fn module_of(path: &str, options: &FrontOptions) -> Module {
@@ -41,27 +34,8 @@ fn module_of(path: &str, options: &FrontOptions) -> Module {
 
 /// The changes of a run with the stimulus of the ALD example, as a CSV.
 fn ald_trace(engine: EngineKind, options: &FrontOptions, schedule: Schedule) -> String {
-    let mut module = module_of("ald/ald.L5X", options);
-    let (mut map, mut diagnostics) = (SourceMap::new(), Diagnostics::new());
-    let file = map.add("stimulus.csv", text_of("ald/stimulus.csv"));
-    let stimulus = Stimulus::parse(file, map.file(file).text(), &mut diagnostics);
-    let request = Request {
-        watches: &[],
-        stimulus: stimulus.as_ref(),
-    };
-    let session = Session::prepare(&mut module, &request, &mut diagnostics);
-    assert!(diagnostics.is_empty(), "{diagnostics:#?}");
-    let (session, mut bytes) = (session.expect("no errors"), Vec::new());
-    let mut engine = engine
-        .start(&module, schedule.period_ns())
-        .expect("the engine starts");
-    let mut trace = CsvTrace::new(&mut bytes, session.columns(), schedule.unit(), true)
-        .expect("writing to memory");
-    session
-        .run(engine.as_mut(), schedule, &mut trace, &mut |_| {})
-        .expect("no fault");
-    trace.finish().expect("writing to memory");
-    String::from_utf8(bytes).expect("UTF-8")
+    let module = module_of("ald/ald.L5X", options);
+    trace_of_changes(module, &example_text("ald/stimulus.csv"), engine, schedule)
 }
 
 fn until(period_ns: u64, length_ms: u64) -> Schedule {
@@ -77,7 +51,11 @@ fn the_ald_trace_is_the_expected_one_on_every_engine() {
         };
         for engine in ENGINES {
             let trace = ald_trace(engine, &options, until(1_000_000, 2101));
-            assert_eq!(trace, text_of("ald/expected.csv"), "{engine:?} {init:?}");
+            assert_eq!(
+                trace,
+                example_text("ald/expected.csv"),
+                "{engine:?} {init:?}"
+            );
         }
     }
 }
@@ -103,17 +81,6 @@ fn build_ald(folder: &Path) {
     write_artifacts(folder, &files).expect("written");
 }
 
-/// What a program says; it must be there and succeed.
-fn said(folder: &Path, program: &str, arguments: &[&str]) -> String {
-    let output = Command::new(program)
-        .args(arguments)
-        .current_dir(folder)
-        .output();
-    let output = output.unwrap_or_else(|e| panic!("{program}: {e}; `scripts/test` installs it"));
-    assert!(output.status.success(), "{program}: {output:?}");
-    String::from_utf8(output.stdout).expect("UTF-8")
-}
-
 /// The testbench works through the synchronisers of the real inputs, and still scan for scan: its
 /// rows number the scans, which are the milliseconds.
 #[test]
@@ -128,8 +95,9 @@ fn the_testbench_of_the_ald_gives_the_expected_trace() {
     } else {
         &files[..5]
     };
-    said(folder.path(), "iverilog", needed);
-    let rows = said(folder.path(), "vvp", &["-n", "tb"]);
+    printed(folder.path(), "iverilog", needed, Stdio::null());
+    let rows = printed(folder.path(), "vvp", &["-n", "tb"], Stdio::null());
+    let rows = String::from_utf8(rows).expect("UTF-8");
     let mut changes = String::new();
     let mut before = "";
     for line in rows.lines() {
@@ -140,7 +108,7 @@ fn the_testbench_of_the_ald_gives_the_expected_trace() {
         before = values;
     }
     assert_eq!(rows.lines().count(), 2102);
-    assert_eq!(changes, text_of("ald/expected.csv"));
+    assert_eq!(changes, example_text("ald/expected.csv"));
 }
 
 /// The recipe's times are constants of the program, which it moves to the presets.

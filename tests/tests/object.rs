@@ -10,13 +10,15 @@ use iecc_ir::{Layout, MemType, Module, Region, parse_module, verify};
 use iecc_jit::{Object, ObjectOptions};
 use iecc_target::{Artifact, Engine, Target, region_bytes};
 use iecc_tests::differential::{Subject, interpreter};
+use iecc_tests::examples::example;
 use iecc_tests::random_ir::{Options, random_module, seeds};
 use iecc_tests::rng::Rng;
 use iecc_tests::runs::compiled;
 use iecc_tests::stimulus::{ScanInput, random_stimulus};
+use iecc_tests::tools::printed;
 use std::fs::{self, File};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::Path;
+use std::process::Stdio;
 
 /// C that is executed for every scan it reads: time and inputs in; fault, outputs and tags out.
 const HARNESS: &str = r#"
@@ -46,26 +48,9 @@ int main(void) {
 
 const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"];
 
-fn example(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../examples")
-        .join(path)
-}
-
-/// What a program says; it must be there and succeed.
-fn said(folder: &Path, program: &str, arguments: &[&str], input: Stdio) -> Vec<u8> {
-    let mut command = Command::new(program);
-    let command = command.args(arguments).current_dir(folder).stdin(input);
-    let output = command.output();
-    let output = output.unwrap_or_else(|e| panic!("{program}: {e}; `scripts/test` installs it"));
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{program}: {message}");
-    output.stdout
-}
-
 fn cc(folder: &Path, arguments: &[&str]) {
     let arguments = [&WARNINGS[..], arguments].concat();
-    said(folder, "cc", &arguments, Stdio::null());
+    printed(folder, "cc", &arguments, Stdio::null());
 }
 
 fn objects(module: &Module) -> Vec<Artifact> {
@@ -107,7 +92,7 @@ fn run_harness(module: &Module, files: &[Artifact], stimulus: &[ScanInput]) -> V
     });
     fs::write(folder.join("scans"), scans.collect::<Vec<_>>().concat()).expect("written");
     let scans = File::open(folder.join("scans")).expect("just written");
-    said(folder, "./harness", &[], scans.into())
+    printed(folder, "./harness", &[], scans.into())
 }
 
 /// Compares with the interpreter on the module as given.
@@ -149,8 +134,8 @@ fn c_program(files: &[Artifact], text: &str, compiler: &[&str]) -> String {
     fs::write(folder.join(source), text).expect("written");
     let output = ["-o", "program", source, "-xnone", object];
     let arguments = [&WARNINGS[..], &compiler[1..], &output].concat();
-    said(folder, compiler[0], &arguments, Stdio::null());
-    String::from_utf8(said(folder, "./program", &[], Stdio::null())).expect("UTF-8")
+    printed(folder, compiler[0], &arguments, Stdio::null());
+    String::from_utf8(printed(folder, "./program", &[], Stdio::null())).expect("UTF-8")
 }
 
 /// Counts, and divides the count by an input.
@@ -304,7 +289,7 @@ fn the_same_program_gives_the_same_object_which_needs_no_other() {
         let files = objects(&random_module(seed, &Options::all()));
         let folder = tempfile::tempdir().expect("a folder");
         write_artifacts(folder.path(), &files).expect("written");
-        let undefined = said(folder.path(), "nm", &["-u", &files[0].name], Stdio::null());
+        let undefined = printed(folder.path(), "nm", &["-u", &files[0].name], Stdio::null());
         let undefined = String::from_utf8(undefined).expect("UTF-8");
         let names = undefined
             .lines()
@@ -417,7 +402,7 @@ fn the_python_example_prints_the_expected_trace() {
         path.to_str().expect("UTF-8").to_owned()
     });
     let arguments = [&script, "./libALD_Reactor.so", &stimulus];
-    let trace = said(folder, "python3", &arguments, Stdio::null());
+    let trace = printed(folder, "python3", &arguments, Stdio::null());
     let expected = fs::read(example("ald/expected.csv")).expect("it is there");
     assert_eq!(String::from_utf8(trace), String::from_utf8(expected));
 }
@@ -434,7 +419,7 @@ fn the_c_example_makes_one_batch() {
         folder,
         &["-std=c11", "-I.", "-o", "ald", source, "ALD_Reactor.o"],
     );
-    let said = String::from_utf8(said(folder, "./ald", &[], Stdio::null())).expect("UTF-8");
+    let said = String::from_utf8(printed(folder, "./ald", &[], Stdio::null())).expect("UTF-8");
     assert!(said.ends_with("\nbatches: 1\n"), "{said}");
     let cells = said.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let openings = cells.filter(|cells| cells.get(1) == Some(&"1"));

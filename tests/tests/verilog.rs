@@ -14,9 +14,10 @@ use iecc_tests::one_block::one_block_module;
 use iecc_tests::random_ir::{self, random_module, seeds};
 use iecc_tests::rng::Rng;
 use iecc_tests::stimulus::random_stimulus;
+use iecc_tests::tools::{self, said};
 use iecc_verilog::{Board, Clock, Options, Verilog, max_step};
 use std::path::Path;
-use std::process::Command;
+use std::process::Stdio;
 
 const MS: u64 = 1_000_000;
 
@@ -122,14 +123,7 @@ fn build(module: &Module, options: &Options, folder: &Path) {
 
 /// Runs a program in a folder and gives everything it says. A missing program fails the test.
 fn run(folder: &Path, program: &str, arguments: &[&str]) -> String {
-    let output = Command::new(program)
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap_or_else(|error| panic!("{program}: {error}; `scripts/test` installs it"));
-    let text = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{program} {arguments:?}:\n{text}");
-    text.into_owned()
+    said(&tools::run(folder, program, arguments, Stdio::null()))
 }
 
 /// The design files of a module called `name`.
