@@ -63,6 +63,8 @@ pub(crate) struct Body<'b, 'a> {
     pub(super) pending: Vec<StmtId>,
     /// The REFERENCEs that were followed, by the addresses read from them.
     followed: HashMap<ExprId, Place>,
+    /// How many calls were written that may change something.
+    pub(super) effects: u32,
     /// Calls whose EN has been looked at.
     skips: HashSet<st::Id<st::Expr>>,
     /// Whether only constants are allowed; what is not constant is reported where it stands.
@@ -97,6 +99,7 @@ impl<'b, 'a> Body<'b, 'a> {
             loops: Vec::new(),
             pending: Vec::new(),
             followed: HashMap::new(),
+            effects: 0,
             skips: HashSet::new(),
             constant_only: false,
         }

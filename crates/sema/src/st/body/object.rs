@@ -95,6 +95,9 @@ impl Body<'_, '_> {
 
     /// The body that a call runs.
     pub(super) fn run_unit(&mut self, target: &Target) -> hir::PouId {
+        if !self.an.is_library(self.an.pou(target.signature).unit) {
+            self.effects += 1;
+        }
         match &target.run {
             Run::Function => self.an.want(target.signature),
             Run::On { body, .. } => {

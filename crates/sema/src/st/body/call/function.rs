@@ -114,7 +114,7 @@ impl Body<'_, '_> {
         eno: Option<Argument>,
         range: TextRange,
     ) -> Operand {
-        let (mut given, mut outputs) = (Vec::new(), Vec::new());
+        let (mut given, mut outputs) = (Vec::<(Var, Operand)>::new(), Vec::new());
         for (var, argument) in matched {
             let Some(value) = argument.value else {
                 continue;
@@ -127,7 +127,10 @@ impl Body<'_, '_> {
                     given.push((var, operand.clone()));
                 }
                 Some(Direction::In) | None => {
-                    let operand = self.expr(value, Some(var.ty));
+                    let earlier = given.iter_mut().filter_map(|(var, operand)| {
+                        (var.section.direction() != Some(Direction::InOut)).then_some(operand)
+                    });
+                    let operand = self.next_operand(earlier, |body| body.expr(value, Some(var.ty)));
                     given.push((var, operand));
                 }
             }

@@ -5,6 +5,7 @@ mod block;
 mod builtin;
 mod function;
 mod mock;
+mod order;
 mod presence;
 
 pub(super) use presence::Presence;
@@ -144,6 +145,17 @@ impl Body<'_, '_> {
 
     /// A call in an expression.
     pub(super) fn call(
+        &mut self,
+        id: st::Id<st::Expr>,
+        callee: st::Id<st::Expr>,
+        arguments: st::List<Argument>,
+        range: TextRange,
+        want: Option<TypeId>,
+    ) -> Operand {
+        self.in_place(|body| body.call_anywhere(id, callee, arguments, range, want))
+    }
+
+    fn call_anywhere(
         &mut self,
         id: st::Id<st::Expr>,
         callee: st::Id<st::Expr>,

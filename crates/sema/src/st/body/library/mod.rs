@@ -264,7 +264,8 @@ impl Body<'_, '_> {
                 }
                 ArgumentKind::Positional | ArgumentKind::Input(_) => {
                     if let Some(value) = argument.value {
-                        let operand = self.expr(value, want);
+                        let earlier = given.operands.iter_mut().map(|(_, operand)| operand);
+                        let operand = self.next_operand(earlier, |body| body.expr(value, want));
                         given.operands.push((argument.kind, operand));
                     }
                 }

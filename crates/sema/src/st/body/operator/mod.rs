@@ -187,9 +187,12 @@ impl Body<'_, '_> {
         if matches!(op, BinaryOp::AndThen | BinaryOp::OrElse) {
             return self.short_circuit(op, left, right, range);
         }
-        let left = self.expr(left, inner);
-        let right = self.expr(right, inner);
-        self.binary_on(op, left, right, range, want)
+        self.in_place(|body| {
+            let mut left = body.expr(left, inner);
+            let earlier = Some(&mut left);
+            let right = body.next_operand(earlier, |body| body.expr(right, inner));
+            body.binary_on(op, left, right, range, want)
+        })
     }
 
     /// An operator on operands that were looked at.
