@@ -227,11 +227,8 @@ impl Generator<'_> {
     pub(super) fn block_unit(&mut self, index: usize) {
         let start = self.draft.position();
         let base = self.units.len() - 1;
-        // A block with open arrays cannot be extended yet.
-        let open = |param: &Param| matches!(param.ty, Type::Open(_));
-        let body = self.units[base].body.as_ref();
-        let closed = body.is_some_and(|body| !body.params.iter().any(open));
-        let extends = base >= self.standard && closed && self.rng.one_in(2);
+        let is_block = self.units[base].body.is_some();
+        let extends = base >= self.standard && is_block && self.rng.one_in(2);
         let mut signature = self.signature(&format!("Block{index}"), None, true);
         if extends {
             return self.derived_block(base, &signature.name);

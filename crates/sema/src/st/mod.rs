@@ -1,9 +1,11 @@
 //! Structured Text: from the trees of all files to a typed program.
 //!
 //! 1. `declare` collects names: units, types, namespaces. Nothing is resolved, so order is free.
-//! 2. `resolve` and `signatures` give types to declarations, on demand; `initial` gives values.
-//! 3. `body` checks every body and writes it down as [`hir::code`].
-//! 4. `program` makes instances, tasks, inputs and outputs.
+//! 2. `resolve` and `signatures` give types to declarations, on demand; `initial` gives values,
+//!    `storage` and `address` say where they lie, `objects` who extends whom and which body runs.
+//! 3. `body` checks every body and writes it down as [`hir::code`]; `lint` warns.
+//! 4. `program` and `config` make instances, tasks, inputs and outputs; `testing` makes unit tests a
+//!    program.
 //!
 //! Every mistake of every file is reported. What is wrong once counts as of the error type from
 //! there on, which goes with everything: a mistake gives one message. Library units are checked
