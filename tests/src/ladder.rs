@@ -135,13 +135,6 @@ impl Source {
         self
     }
 
-    /// A `<Routine>` element as it is.
-    #[must_use]
-    pub fn routine_xml(mut self, xml: &str) -> Self {
-        self.routines += xml;
-        self
-    }
-
     /// One more program, with a main routine `Main`; scheduled behind the others or not.
     #[must_use]
     pub fn program(mut self, name: &str, tags: &str, rungs: &[&str], scheduled: bool) -> Self {

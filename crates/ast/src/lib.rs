@@ -5,8 +5,9 @@
 //! here ignore case, and whoever compares names folds them. Nothing is checked beyond syntax, so
 //! names may be missing, doubled or unknown.
 //!
-//! Readers bound the nesting of everything that is a tree here ([`MAX_TREE_DEPTH`]), so visitors
-//! may recurse.
+//! Readers bound the nesting of everything that is a tree here, so visitors may recurse: expressions of
+//! ladder count at most 64 brackets and 256 operators, rungs 64 branches, tag data 128 levels, Structured
+//! Text what [`st`] says.
 
 mod data;
 pub mod logix;
@@ -19,10 +20,6 @@ pub mod st;
 pub use data::{Initial, L5kValue, Parameters, StringData, Value, ValueKind};
 pub use names::{Names, Symbol};
 pub use numbers::{Number, RealText, StringLiteral, parse_number, underlines_are_between_digits};
-
-/// How deep any tree in this crate can nest: expressions count at most 64 brackets and 256
-/// operators, rungs 64 branches, tag data 128 levels, Structured Text what [`st`] says.
-pub const MAX_TREE_DEPTH: usize = 512;
 
 /// A name or a short text, as spelled, and where.
 pub type Name = iecc_source::Spanned<String>;

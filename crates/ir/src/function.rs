@@ -183,14 +183,6 @@ impl Function {
         value
     }
 
-    /// Removes a parameter of a block. The value must be unused and the jumps adapted.
-    pub fn remove_param(&mut self, block: Block, index: usize) {
-        self.blocks[block].params.remove(index);
-        for (position, &param) in self.blocks[block].params.iter().enumerate().skip(index) {
-            self.values[param].def = ValueDef::Param(block, position as u32);
-        }
-    }
-
     /// Keeps the parameters of a block for whose position `keep` holds, and the arguments for them.
     /// The others must be unused. `predecessors` are the blocks that jump here.
     pub fn retain_params(
