@@ -3,6 +3,9 @@
 //! Order of the text: ports, synchronisers, tick dividers, registers with what they hold, the logic
 //! rung by rung, the one clocked block, outputs.
 
+mod dividers;
+mod ports;
+
 use super::expression::{Expressions, Naming, constant, declaration, unread, write};
 use super::{comment_lines, vector};
 use crate::design::{Design, Purpose, Register, StepUnit};
@@ -14,10 +17,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{self, Write};
 
 /// The counter of whole ratios and the accumulator of others.
-pub(crate) const TICK: (&str, &str) = ("iecc_tick.v", include_str!("../../runtime/iecc_tick.v"));
+pub(crate) const TICK: (&str, &str) = ("iecc_tick.v", include_str!("../../../runtime/iecc_tick.v"));
 pub(crate) const TICK_FRACTION: (&str, &str) = (
     "iecc_tick_fraction.v",
-    include_str!("../../runtime/iecc_tick_fraction.v"),
+    include_str!("../../../runtime/iecc_tick_fraction.v"),
 );
 
 /// The module's text and what others need to know of it.
@@ -254,170 +257,6 @@ impl Emitter<'_> {
         )
     }
 
-    fn ports(&mut self, name: &str) -> fmt::Result {
-        let mut lines = vec![
-            (
-                "input  wire clk".to_owned(),
-                "one scan per rising edge".to_owned(),
-            ),
-            (
-                "input  wire rst".to_owned(),
-                "synchronous, high; at least 3 clocks".to_owned(),
-            ),
-        ];
-        for (input, name) in self.design.inputs.iter().zip(&self.inputs) {
-            let bits = vector(input.port.ty.bits());
-            lines.push((
-                format!("input  wire {bits}{name}"),
-                renamed(&input.port.name, name),
-            ));
-        }
-        for (output, name) in self.design.outputs.iter().zip(&self.outputs) {
-            let own = self.registers.iter().position(|register| register == name);
-            let kind = if own.is_some() { "reg " } else { "wire" };
-            let bits = vector(output.port.ty.bits());
-            let mut comment = renamed(&output.port.name, name);
-            if let Some(register) = own.map(|index| &self.design.registers[index]) {
-                let separator = if comment.is_empty() { "" } else { "; " };
-                comment = comment + separator + &register_comment(register, name);
-            }
-            lines.push((format!("output {kind} {bits}{name}"), comment));
-        }
-        let last = lines.len() - 1;
-        writeln!(self.out, "module {name} (")?;
-        for (index, (port, comment)) in lines.iter().enumerate() {
-            let comma = if index == last { "" } else { "," };
-            let line = format!("    {port}{comma}");
-            if comment.is_empty() {
-                writeln!(self.out, "{line}")?;
-            } else {
-                writeln!(self.out, "{line:<40}  // {comment}")?;
-            }
-        }
-        writeln!(self.out, ");")
-    }
-
-    fn synchronisers(&mut self) -> fmt::Result {
-        let inputs = self.design.inputs.iter().zip(&self.synchronised);
-        let stages: Vec<(&str, &[String; 2], u32)> = inputs
-            .zip(&self.inputs)
-            .filter_map(|((input, stages), name)| {
-                Some((name.as_str(), stages.as_ref()?, input.port.ty.bits()))
-            })
-            .collect();
-        if stages.is_empty() {
-            return Ok(());
-        }
-        let out = &mut self.out;
-        writeln!(
-            out,
-            "\n    // Inputs come from another world: two registers each before use."
-        )?;
-        for (_, [first, second], width) in &stages {
-            writeln!(out, "    reg {}{first}, {second};", vector(*width))?;
-        }
-        writeln!(out, "\n    always @(posedge clk) begin")?;
-        for (name, [first, second], _) in &stages {
-            writeln!(out, "        {first} <= {name};")?;
-            writeln!(out, "        {second} <= {first};")?;
-        }
-        writeln!(out, "    end")
-    }
-
-    fn dividers(&mut self) -> fmt::Result {
-        let units = &self.design.units;
-        if units.is_empty() {
-            return Ok(());
-        }
-        if units.iter().any(|unit| unit.divider.whole > 0) {
-            writeln!(
-                self.out,
-                "\n    // No time has passed in the first scan.\n    reg started;\n\n    \
-                 always @(posedge clk)\n        started <= ~rst;"
-            )?;
-        }
-        for (index, unit) in units.iter().enumerate() {
-            self.divider(index, unit)?;
-        }
-        Ok(())
-    }
-
-    fn divider(&mut self, index: usize, unit: &StepUnit) -> fmt::Result {
-        let name = self.ticks[index].clone();
-        let text = unit_text(unit.unit_ns);
-        let divider = unit.divider;
-        writeln!(
-            self.out,
-            "\n    // {name}: boundaries of {text} passed since the scan before."
-        )?;
-        if divider.numerator > 0 {
-            self.wrap(index, unit)?;
-        }
-        if divider.whole == 0 {
-            if unit.net.is_none() {
-                return Ok(());
-            }
-            return writeln!(
-                self.out,
-                "    reg {name};\n\n    always @(posedge clk)\n        {name} <= ~rst & {name}_wrap;"
-            );
-        }
-        if divider.is_tick() {
-            return writeln!(self.out, "    wire {name} = started;");
-        }
-        let width = 64 - divider.max_step().leading_zeros();
-        let whole = constant(width, u128::from(divider.whole));
-        let zero = constant(width, 0);
-        if divider.numerator == 0 {
-            return writeln!(
-                self.out,
-                "    wire [{}:0] {name} = started ? {whole} : {zero};",
-                width - 1
-            );
-        }
-        let pad = if width > 1 {
-            format!("{{{}, {name}_more}}", constant(width - 1, 0))
-        } else {
-            format!("{name}_more")
-        };
-        writeln!(
-            self.out,
-            "    reg {name}_more;\n\n    always @(posedge clk)\n        {name}_more <= ~rst & {name}_wrap;\n\n    \
-             wire [{}:0] {name} = started ? {whole} + {pad} : {zero};",
-            width - 1
-        )
-    }
-
-    /// The counter whose `wrap` marks a boundary.
-    fn wrap(&mut self, index: usize, unit: &StepUnit) -> fmt::Result {
-        let name = self.ticks[index].clone();
-        let divider = unit.divider;
-        let (period, enable) = match unit.counts {
-            Some((base, times)) => (times, format!("{}_wrap", self.ticks[base])),
-            None => (divider.denominator, "1'b1".to_owned()),
-        };
-        let width = (64 - (period - 1).leading_zeros()).max(2);
-        let number = |n: u64| constant(width, u128::from(n));
-        writeln!(self.out, "    wire {name}_wrap;")?;
-        if unit.counts.is_some() || divider.numerator == 1 {
-            self.runtime.insert(TICK);
-            return writeln!(
-                self.out,
-                "    iecc_tick #(.WIDTH({width}), .LAST({})) {name}_divider (\n        \
-                 .clk(clk), .rst(rst), .enable({enable}), .wrap({name}_wrap)\n    );",
-                number(period - 1)
-            );
-        }
-        self.runtime.insert(TICK_FRACTION);
-        writeln!(
-            self.out,
-            "    iecc_tick_fraction #(.WIDTH({width}), .ADD({}), .REST({})) {name}_divider (\n        \
-             .clk(clk), .rst(rst), .wrap({name}_wrap)\n    );",
-            number(divider.numerator),
-            number(divider.denominator - divider.numerator)
-        )
-    }
-
     fn registers(&mut self) -> fmt::Result {
         let rows: Vec<(String, String)> = self
             .design
@@ -496,25 +335,6 @@ impl Emitter<'_> {
             )?;
         }
         writeln!(out, "        end")
-    }
-
-    fn drive_outputs(&mut self) -> fmt::Result {
-        let mut first = true;
-        for (output, name) in self.design.outputs.iter().zip(&self.outputs) {
-            let width = output.port.ty.bits();
-            let value = match output.register {
-                None => constant(width, 0),
-                Some(index) if self.registers[index] == *name => continue,
-                Some(index) => {
-                    widened(&self.design.registers[index], &self.registers[index], width)
-                }
-            };
-            if std::mem::take(&mut first) {
-                writeln!(self.out)?;
-            }
-            writeln!(self.out, "    assign {name} = {value};")?;
-        }
-        Ok(())
     }
 
     /// Lint tools want to hear that something is not read on purpose.
