@@ -22,21 +22,21 @@ fn every_case_can_be_read() {
     assert!(!suite().is_empty());
 }
 
-/// The list of features is that of the digest, row by row.
+/// The list of features is that of the tables in the test data, row by row.
 #[test]
 fn the_features_are_those_of_the_standard() {
     let Some(shared) = shared_dir() else {
         return;
     };
     let path = shared.join("spec/iec61131-3-tables.csv");
-    let text = std::fs::read_to_string(&path).expect("the tables of the digest");
-    let digest = csv_rows(&text).into_iter().map(|row| {
+    let text = std::fs::read_to_string(&path).expect("the tables of the test data");
+    let given = csv_rows(&text).into_iter().map(|row| {
         let [edition, table, title, feature, text, _] = <[String; 6]>::try_from(row).unwrap();
         (format!("{edition}:{table}:{feature}"), title, text)
     });
     let own = features().iter();
     let own = own.map(|row| (row.id.to_string(), row.title.clone(), row.text.clone()));
-    assert_eq!(own.collect::<Vec<_>>(), digest.collect::<Vec<_>>());
+    assert_eq!(own.collect::<Vec<_>>(), given.collect::<Vec<_>>());
 }
 
 /// The rows behind the head; cells in quotes may hold commas and doubled quotes.

@@ -1,4 +1,4 @@
-//! User-defined data types.
+//! User-defined data types: members in the order of the file, hidden ones as well.
 
 use crate::context::{Context, description};
 use crate::xml::Element;

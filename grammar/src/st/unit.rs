@@ -1,4 +1,4 @@
-//! Parses units.
+//! Parses one unit: as it stands if it is right, else mended, with recovery from what is left.
 
 use super::build::{Build, SyntaxError};
 use super::declared::declared;

@@ -1,4 +1,4 @@
-//! Types, variables, units and configurations (digest 3 and 4).
+//! Types, variables, units and configurations.
 
 use crate::check::{outline, parse};
 use iecc_ast::st::{Item, ScopeId};

@@ -1,4 +1,4 @@
-//! Operators bind as the table of the standard says (digest 5.1), paths and calls as written.
+//! Operators bind as the table of the standard says, paths and calls as written.
 
 use crate::check::expression;
 

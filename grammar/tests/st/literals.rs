@@ -1,4 +1,4 @@
-//! Literals have the values that the standard gives them (digest 2).
+//! Literals have the values that the standard gives them.
 
 use crate::check::{expression, one};
 use iecc_diag::Code;

@@ -1,4 +1,4 @@
-//! Statements (digest 5.2).
+//! Statements, each in its forms.
 
 use crate::check::statements;
 

@@ -1,4 +1,5 @@
-//! Statements.
+//! Statements. Which of them may stand where, and of what types their parts are, is for others to
+//! say.
 
 use super::arena::{Id, List};
 use super::expr::Expr;

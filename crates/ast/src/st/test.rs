@@ -1,4 +1,4 @@
-//! Unit tests.
+//! Unit tests: TEST, SETUP, TEARDOWN, and what may stand in them alone.
 
 use super::arena::{Id, List};
 use super::decl::VarSection;

@@ -1,4 +1,4 @@
-//! Comparisons.
+//! Comparisons: of floats as IEEE 754 says, with NaN unordered.
 
 use super::float::widened;
 use crate::{CompareOp, Type};

@@ -1,4 +1,4 @@
-//! Time that has passed.
+//! Time that has passed, in whole units: never negative, never wrapping.
 
 use crate::Type;
 

@@ -1,4 +1,4 @@
-//! Operations with one operand.
+//! Operations with one operand; those of integers wrap, those of floats give the canonical NaN.
 
 use super::float;
 use crate::{Type, UnaryOp};

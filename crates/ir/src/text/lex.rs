@@ -1,4 +1,4 @@
-//! Tokens of the text form.
+//! Tokens of the text form, each with its offset; whatever is none is refused.
 
 /// Units of time and their lengths in nanoseconds.
 pub(super) const UNITS: [(&str, u64); 4] = [

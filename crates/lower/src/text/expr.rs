@@ -1,4 +1,4 @@
-//! Expressions to values.
+//! Expressions to values: operands strictly from left to right, each once.
 
 use super::Unit;
 use super::convert::{convert, resize};

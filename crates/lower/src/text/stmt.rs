@@ -1,4 +1,4 @@
-//! Statements to blocks.
+//! Statements to blocks: what is behind a jump out of a loop or of the body is left out.
 
 use super::expr::number;
 use super::{Loop, Unit};

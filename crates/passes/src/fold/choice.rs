@@ -1,4 +1,4 @@
-//! Rules for `select`.
+//! Rules for `select`: a choice that is known, or between what is alike, is none.
 
 use super::simplify::{Rewriter, Step, binary, not};
 use iecc_ir::{BinaryOp, CompareOp, InstData, Type, Value};

@@ -1,4 +1,4 @@
-//! Numbers in messages.
+//! Numbers in messages: one thing and several are said as people say them.
 
 /// `1 value`, `2 values`.
 pub(crate) fn count_of(count: usize, what: &str) -> String {

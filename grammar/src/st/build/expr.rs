@@ -1,4 +1,5 @@
-//! Expressions.
+//! Expressions as they are reduced: where they begin and end, how deep they are, and the slips that
+//! only the whole of one shows.
 
 use super::Build;
 use iecc_ast::Symbol;

@@ -1,4 +1,4 @@
-//! Integers and reals.
+//! Numbers with the value they have, of any size and base; digits that are none get a message.
 
 use super::Build;
 use crate::st::Dialect;

@@ -1,4 +1,4 @@
-//! Statements.
+//! Statements as they are reduced, and expressions that stand where a statement should.
 
 use super::{Build, CaseItem};
 use iecc_ast::st::{

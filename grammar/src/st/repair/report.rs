@@ -1,4 +1,4 @@
-//! The messages about blocks.
+//! The messages about blocks, one for each that is not balanced.
 
 use super::blocks::{Block, closer};
 use super::{Kind, Located, Repair};

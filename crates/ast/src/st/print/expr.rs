@@ -1,4 +1,4 @@
-//! Expressions.
+//! Expressions, with as few parentheses as give the same tree.
 
 use super::super::{Argument, ArgumentKind, BinaryOp, Direct, Expr, ExprKind, Id, Part, UnaryOp};
 use super::Printer;

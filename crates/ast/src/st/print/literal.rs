@@ -1,4 +1,4 @@
-//! Literals.
+//! Literals in one spelling for each value.
 
 use super::super::time::time_text;
 use super::super::{Id, IntLiteral, Literal, StringLiteral};

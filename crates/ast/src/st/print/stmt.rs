@@ -1,4 +1,4 @@
-//! Statements.
+//! Statements, one to a line, blocks further in.
 
 use super::super::{Block, CaseArm, Expr, Id, Label, Stmt, StmtKind};
 use super::Printer;

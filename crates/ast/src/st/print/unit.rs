@@ -1,4 +1,4 @@
-//! Units.
+//! Units: their headers, sections and bodies in the order of the source.
 
 use super::super::{
     Accessor, Configuration, Expr, Id, List, Member, Method, Pou, ProgramConfig, ProgramElement,

@@ -1,4 +1,5 @@
-//! Expressions.
+//! Expressions: any is looked at here first. Where only constants are allowed it is one, or a
+//! message is given.
 
 use super::{Body, Operand};
 use crate::st::constant::Const;

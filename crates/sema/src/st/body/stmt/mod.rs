@@ -1,4 +1,5 @@
-//! Statements.
+//! Statements as code. Operands that are computed before a statement stand before it, in the order
+//! in which they are written.
 
 mod assign;
 mod case;
