@@ -3,16 +3,17 @@
 //! Declarations are resolved on demand, so their order does not matter; meeting one again while
 //! it is being resolved is a type that contains itself.
 
+mod enumeration;
 mod extended;
 mod suitable;
 
 use super::analysis::{Analysis, MAX_RESOLUTION_DEPTH, Resolution};
-use super::declare::{PACK_MODE, QUALIFIED_ONLY, STRICT};
+use super::declare::PACK_MODE;
 use super::elementary::El;
 use super::signature::{Bindings, Def, Initial, NamespaceId, TypeDeclId, UnitId};
 use super::storage::MAX_ELEMENTS;
 use super::storage::Shape;
-use super::types::{AliasDef, EnumDef, Member, ReferenceKind, StructDef, TypeId, TypeKind};
+use super::types::{AliasDef, Member, ReferenceKind, StructDef, TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, Dimension, ExprKind, TypeKind as Written};
 use iecc_diag::{Code, Diagnostic};
@@ -519,89 +520,5 @@ impl Analysis<'_> {
         let message = format!("`{}` is declared twice", self.text(name));
         let diagnostic = Diagnostic::new(Code::E1003, span, message);
         self.report(diagnostic.also(first, "declared here first"));
-    }
-
-    fn enumeration(
-        &mut self,
-        scope: TypeScope<'_>,
-        base: Option<st::Id<st::Expr>>,
-        values: st::List<st::EnumValue>,
-        name: Option<Symbol>,
-        range: TextRange,
-    ) -> TypeId {
-        let unit = self.unit(scope.unit);
-        let el = match base {
-            None if self.options.codesys && !self.is_library(scope.unit) => El::Int,
-            None => El::Dint,
-            Some(path) => match self.elementary_path(scope, path) {
-                Some(el) if !el.is_real() => el,
-                None if self.options.codesys && self.is_block(scope, path) => {
-                    let span = self.span(scope.unit, range);
-                    let message = "arguments for FB_init are not compiled";
-                    let note = "initial values of inputs stand behind `:=`: (input := 1)";
-                    self.report(Diagnostic::new(Code::E8002, span, message).note(note));
-                    return TypeId::ERROR;
-                }
-                Some(_) | None => {
-                    let span = self.span(scope.unit, unit.arena[path].range);
-                    let message = "named values are of an integer or bit string type";
-                    self.error(Code::E2022, span, message);
-                    return TypeId::ERROR;
-                }
-            },
-        };
-        let strict = self.has_attribute(scope.unit, range.start, STRICT);
-        let qualified = self.has_attribute(scope.unit, range.start, QUALIFIED_ONLY);
-        let ty = self.types.add_enum(EnumDef {
-            name,
-            base: el,
-            named_values: base.is_some() && !strict,
-            qualified,
-            values: Vec::new(),
-            span: unit.span(range),
-        });
-        let TypeKind::Enum(index) = *self.types.kind(ty) else {
-            unreachable!("made above")
-        };
-        let mut next = 0;
-        for value in &unit.arena[values] {
-            let number = match value.value {
-                None => Some(next),
-                Some(expr) => self.enumerator_value(scope, ty, expr, el),
-            };
-            let number = number.unwrap_or(next);
-            next = number + 1;
-            let name = value.name.name;
-            let known = &mut self.types.enums[index as usize].values;
-            if known.iter().any(|(other, _)| *other == name) {
-                let span = unit.span(value.name.range);
-                let message = format!("`{}` is declared twice", self.text(name));
-                self.error(Code::E1003, span, message);
-                continue;
-            }
-            known.push((name, number));
-            if !qualified {
-                self.enumerators.entry(name).or_default().push((ty, number));
-            }
-        }
-        ty
-    }
-
-    fn is_block(&self, scope: TypeScope<'_>, path: st::Id<st::Expr>) -> bool {
-        let found = self.path(scope.unit, scope.namespace, path);
-        found.is_some_and(
-            |defs| matches!(defs, [Def::Pou(pou), ..] if self.pou(*pou).has_instances()),
-        )
-    }
-
-    /// The value of an enumerator may name those before it.
-    fn enumerator_value(
-        &mut self,
-        scope: TypeScope<'_>,
-        _ty: TypeId,
-        expr: st::Id<st::Expr>,
-        el: El,
-    ) -> Option<i128> {
-        self.constant_int(scope, expr, TypeId::of(el))
     }
 }

@@ -16,48 +16,20 @@ impl Body<'_, '_> {
         range: TextRange,
     ) -> Vec<(Var, Argument)> {
         let written: Vec<Argument> = self.arena()[arguments].to_vec();
-        let positional = written
-            .iter()
-            .filter(|argument| argument.kind == ArgumentKind::Positional)
-            .count();
-        if positional > 0 && positional < written.len() && !self.an.options.codesys {
-            let message = "arguments are given either all by name or all by position";
-            self.error(Message::E3017, range, message);
-        }
         let parameters = self.an.all_parameters(pou);
-        if positional > parameters.len() {
-            let message = format!(
-                "{positional} arguments are given but `{}` has {} parameters",
-                self.text(self.an.pou(pou).name),
-                parameters.len()
-            );
-            self.error(Message::E3018, range, message);
-        }
-        if positional > 0 && positional == written.len() {
-            self.require_positions(pou, &parameters, positional, range);
-        }
+        self.check_positions(pou, &parameters, &written, range);
         let mut matched: Vec<(Var, Argument)> = Vec::with_capacity(written.len());
-        let mut next = 0;
+        let mut by_position = parameters.iter();
         for argument in written {
             let var = match argument.kind {
-                ArgumentKind::Positional => {
-                    next += 1;
-                    parameters.get(next - 1)
-                }
+                ArgumentKind::Positional => by_position.next(),
                 ArgumentKind::Input(name)
                 | ArgumentKind::Output(name)
                 | ArgumentKind::NegatedOutput(name) => {
                     if self.is_enable(name.name) {
                         continue;
                     }
-                    let alias = self.an.parameter_alias(pou, name.name);
-                    let wanted = alias.unwrap_or(name.name);
-                    let found = parameters.iter().find(|var| var.name == wanted);
-                    if found.is_none() {
-                        let known = parameters.iter().map(|var| var.name);
-                        self.no_parameter(pou, name, known);
-                    }
-                    found
+                    self.parameter_named(pou, &parameters, name)
                 }
             };
             let Some(var) = var else {
@@ -76,6 +48,50 @@ impl Body<'_, '_> {
             }
         }
         matched
+    }
+
+    /// The parameter of a name, or of one that has it in edition 2.
+    fn parameter_named<'v>(
+        &mut self,
+        pou: PouId,
+        parameters: &'v [Var],
+        name: st::Ident,
+    ) -> Option<&'v Var> {
+        let alias = self.an.parameter_alias(pou, name.name);
+        let wanted = alias.unwrap_or(name.name);
+        let found = parameters.iter().find(|var| var.name == wanted);
+        if found.is_none() {
+            let known = parameters.iter().map(|var| var.name);
+            self.no_parameter(pou, name, known);
+        }
+        found
+    }
+
+    /// Whether arguments by position stand alone, and are as many as there are parameters.
+    fn check_positions(
+        &mut self,
+        pou: PouId,
+        parameters: &[Var],
+        written: &[Argument],
+        range: TextRange,
+    ) {
+        let by_position = |argument: &&Argument| argument.kind == ArgumentKind::Positional;
+        let positional = written.iter().filter(by_position).count();
+        if positional > 0 && positional < written.len() && !self.an.options.codesys {
+            let message = "arguments are given either all by name or all by position";
+            self.error(Message::E3017, range, message);
+        }
+        if positional > parameters.len() {
+            let message = format!(
+                "{positional} arguments are given but `{}` has {} parameters",
+                self.text(self.an.pou(pou).name),
+                parameters.len()
+            );
+            self.error(Message::E3018, range, message);
+        }
+        if positional > 0 && positional == written.len() {
+            self.require_positions(pou, parameters, positional, range);
+        }
     }
 
     /// Arguments by position reach to the last input and in-out.

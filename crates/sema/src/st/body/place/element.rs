@@ -48,48 +48,16 @@ impl Body<'_, '_> {
             let message = format!("{} has no elements", self.type_name(base.ty));
             return self.error(Message::E2031, base.range, message);
         };
-        let (root, mut steps, rights) = (place.root, place.steps.clone(), place.rights);
-        match self.an.types.base(base.ty).clone() {
+        let mut place = place.clone();
+        let found = match self.an.types.base(base.ty).clone() {
             TypeKind::Array {
                 dimensions,
                 element,
-            } => {
-                let (first, inner) = dimensions.split_first().expect("at least one dimension");
-                let Some(step) = self.subscript(index, *first) else {
-                    return Operand::error(range);
-                };
-                steps.push(step);
-                let ty = if inner.is_empty() {
-                    element
-                } else {
-                    self.an.types.intern(TypeKind::Array {
-                        dimensions: inner.into(),
-                        element,
-                    })
-                };
-                self.place_operand(root, steps, rights, ty, range)
-            }
-            TypeKind::Text { wide, length } => {
-                let index_range = self.arena()[index].range;
-                let operand = self.expr(index, None);
-                if operand.is_error() || !self.integer_index(&operand) {
-                    return Operand::error(range);
-                }
-                if let Some(Const::Int(value)) = operand.as_const()
-                    && !(1..=i128::from(length)).contains(value)
-                {
-                    let message = format!("position {value} is not between 1 and {length}");
-                    return self.error(Message::E2002, index_range, message);
-                }
-                let checked = self.unchecked();
-                let value = self.raw(&operand);
-                steps.push(PathStep::Character { value, checked });
-                let el = if wide { El::Wchar } else { El::Char };
-                self.place_operand(root, steps, rights, TypeId::of(el), range)
-            }
+            } => self.array_element(&dimensions, element, index),
+            TypeKind::Text { wide, length } => self.character(wide, length, index),
             TypeKind::Reference(..) if self.an.options.codesys => {
                 self.no_arithmetic("a subscript computes with a pointer", range);
-                Operand::error(range)
+                None
             }
             TypeKind::Error
             | TypeKind::Nothing
@@ -106,9 +74,58 @@ impl Body<'_, '_> {
             | TypeKind::Reference(..)
             | TypeKind::Alias(_) => {
                 let message = format!("{} has no elements", self.type_name(base.ty));
-                self.error(Message::E2031, base.range, message)
+                return self.error(Message::E2031, base.range, message);
             }
+        };
+        let Some((step, ty)) = found else {
+            return Operand::error(range);
+        };
+        place.steps.push(step);
+        self.place_operand(place.root, place.steps, place.rights, ty, range)
+    }
+
+    /// The step to an element of the first dimension, and what lies there.
+    fn array_element(
+        &mut self,
+        dimensions: &[(i64, i64)],
+        element: TypeId,
+        index: st::Id<st::Expr>,
+    ) -> Option<(PathStep, TypeId)> {
+        let (first, inner) = dimensions.split_first().expect("at least one dimension");
+        let step = self.subscript(index, *first)?;
+        if inner.is_empty() {
+            return Some((step, element));
         }
+        let ty = self.an.types.intern(TypeKind::Array {
+            dimensions: inner.into(),
+            element,
+        });
+        Some((step, ty))
+    }
+
+    /// The step to a character of a string, counted from 1.
+    fn character(
+        &mut self,
+        wide: bool,
+        length: u32,
+        index: st::Id<st::Expr>,
+    ) -> Option<(PathStep, TypeId)> {
+        let range = self.arena()[index].range;
+        let operand = self.expr(index, None);
+        if operand.is_error() || !self.integer_index(&operand) {
+            return None;
+        }
+        if let Some(Const::Int(value)) = operand.as_const()
+            && !(1..=i128::from(length)).contains(value)
+        {
+            let message = format!("position {value} is not between 1 and {length}");
+            self.error(Message::E2002, range, message);
+            return None;
+        }
+        let checked = self.unchecked();
+        let value = self.raw(&operand);
+        let el = if wide { El::Wchar } else { El::Char };
+        Some((PathStep::Character { value, checked }, TypeId::of(el)))
     }
 
     /// The smallest and largest value of a type of whole numbers.
