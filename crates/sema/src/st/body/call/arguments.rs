@@ -50,7 +50,7 @@ impl Body<'_, '_> {
         matched
     }
 
-    /// The parameter of a name, or of one that has it in edition 2.
+    /// The parameter that has a name, or has it as its second one.
     fn parameter_named<'v>(
         &mut self,
         pou: PouId,
