@@ -47,11 +47,11 @@ impl Explain<'_, '_> {
             let message = format!("{found} stands behind the end of the unit");
             return Diagnostic::new(Code::E0010, span, message);
         }
-        let expected = describe(expected);
-        let message = format!("found {found}, expected {expected}");
+        let described = describe(expected);
+        let message = format!("found {found}, expected {described}");
         let diagnostic =
-            Diagnostic::new(Code::E0010, span, message).label(format!("expected {expected}"));
-        self.hint(diagnostic, start)
+            Diagnostic::new(Code::E0010, span, message).label(format!("expected {described}"));
+        self.hint(diagnostic, start, expected)
     }
 
     /// Tokens put in by the repair are empty: what the reader sees there is the next token.
@@ -65,10 +65,12 @@ impl Explain<'_, '_> {
     }
 
     /// A word more where a slip is common.
-    fn hint(&self, diagnostic: Diagnostic, start: u32) -> Diagnostic {
+    fn hint(&self, diagnostic: Diagnostic, start: u32, expected: &[String]) -> Diagnostic {
         let at = self.feed.partition_point(|token| token.0 < start);
         let kind = |at: usize| self.feed.get(at).map(|token| token.1.kind);
         let before = at.checked_sub(1).and_then(kind);
+        let has = |word: &str| expected.iter().any(|one| one.trim_matches('"') == word);
+        let condition = has("THEN") || has("DO") || has("OF");
         match (before, kind(at)) {
             (Some(Kind::Word), Some(Kind::Equal)) => {
                 diagnostic.note("a value is assigned with `:=`")
@@ -79,8 +81,42 @@ impl Explain<'_, '_> {
             (Some(Kind::Equal), Some(Kind::Equal)) => {
                 diagnostic.note("values are compared with `=`")
             }
+            (_, Some(Kind::Assign)) if condition => {
+                let span = Span::new(self.tokens.file, start, start + 2);
+                let note = "`:=` assigns, which a condition cannot; values are compared with `=`";
+                diagnostic.note(note).fix("compare with `=`", span, "=")
+            }
+            (_, Some(Kind::Assign)) if has(":") => {
+                diagnostic.note("a declaration is written `name : type := value;`")
+            }
+            (Some(Kind::Int), Some(Kind::Comma)) if self.joined(at) => {
+                let span = Span::new(self.tokens.file, start, start + 1);
+                diagnostic.fix("write a decimal point", span, ".")
+            }
+            (_, Some(Kind::Dot)) if kind(at + 1) == Some(Kind::Int) && self.joined(at) => {
+                let span = Span::new(self.tokens.file, start, start);
+                let note = "a real number has digits on both sides of its decimal point";
+                diagnostic.note(note).fix("put in a 0", span, "0")
+            }
+            (Some(Kind::And | Kind::Or | Kind::Xor | Kind::Ampersand), Some(kind))
+                if kind.compares() =>
+            {
+                diagnostic.note("each comparison has two sides: `x > 0 AND x < 10`")
+            }
+            (Some(Kind::Int), Some(Kind::CloseBracket)) if has("..") => {
+                diagnostic.note("an array has a first and a last subscript: `ARRAY[0..9]`")
+            }
+            (Some(Kind::Word), Some(Kind::Word)) if has(":") => {
+                diagnostic.note("the name comes before its type: `count : INT;`")
+            }
             _ => diagnostic,
         }
+    }
+
+    /// Whether a token touches the next one.
+    fn joined(&self, at: usize) -> bool {
+        let next = self.feed.get(at + 1);
+        next.is_some_and(|next| next.0 == self.feed[at].2 && next.1.kind == Kind::Int)
     }
 }
 

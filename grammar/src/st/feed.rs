@@ -1,6 +1,7 @@
 //! What the parser gets to see of a fragment: its tokens without comments and pragmas, and with
 //! the damage of single tokens reported and mended.
 
+use super::foreign::{self, Sign};
 use super::lexer::Tokens;
 use super::slice::Fragment;
 use super::token::{Kind, Token};
@@ -38,6 +39,8 @@ pub(crate) fn feed(
         tries: false,
         catches: false,
         misspelt: BTreeSet::new(),
+        spaces: BTreeSet::new(),
+        skip_to: 0,
         feed: Feed {
             tokens: Vec::with_capacity(list.len()),
             pragmas: Vec::new(),
@@ -61,12 +64,16 @@ struct Feeder<'f, 't> {
     catches: bool,
     /// Names that a message was given for.
     misspelt: BTreeSet<Symbol>,
+    /// Characters that look like white space, and that a message was given for.
+    spaces: BTreeSet<char>,
+    /// Up to where tokens are left out.
+    skip_to: u32,
     feed: Feed,
 }
 
 impl Feeder<'_, '_> {
     fn take(&mut self, mut token: Token) {
-        if self.is_of_exception(token) {
+        if token.start < self.skip_to || self.is_of_exception(token) {
             return;
         }
         match token.kind {
@@ -87,6 +94,10 @@ impl Feeder<'_, '_> {
             Kind::Word => self.word(token),
             _ => {}
         }
+        self.push(token);
+    }
+
+    fn push(&mut self, token: Token) {
         if std::mem::take(&mut self.hole) {
             self.feed.holes.push(token.start);
         }
@@ -149,20 +160,131 @@ impl Feeder<'_, '_> {
         self.diagnostics.push(diagnostic);
     }
 
-    /// Bytes that stand together get one message.
+    /// What means nothing here. Bytes that stand together get one message.
     fn unknown(&mut self, token: Token) {
+        let text = self.tokens.slice(token);
+        match text.chars().next().map_or(Sign::Nothing, foreign::sign) {
+            Sign::Space => return self.foreign_space(token),
+            Sign::Quote => return self.foreign_quote(token),
+            Sign::Operator(kind, instead) => return self.foreign_operator(token, kind, instead),
+            Sign::Nothing => {}
+        }
+        if text == "#" && self.begins_line(token) {
+            return self.foreign_comment(token);
+        }
         self.hole = true;
         if let Some(last) = self.last_unknown()
-            && last.end == token.start
+            && last.end >= token.start
         {
             return;
         }
-        let shown = self.tokens.slice(token).escape_debug().to_string();
+        let rest = &self.tokens.text[token.start as usize..];
+        if let Some((length, note, instead)) = foreign::elsewhere(rest) {
+            return self.sign_from_elsewhere(token, length, note, instead);
+        }
+        let shown = text.escape_debug().to_string();
         let message = match shown.as_str() {
             "*)" | "*/" => format!("`{shown}` ends a comment that was not begun"),
             _ => format!("`{shown}` has no meaning here"),
         };
         self.report(Code::E0014, token, message);
+    }
+
+    fn sign_from_elsewhere(
+        &mut self,
+        token: Token,
+        length: usize,
+        note: &str,
+        instead: Option<&str>,
+    ) {
+        let end = token.start + length as u32;
+        let span = self.span(token.start, end);
+        let text = &self.tokens.text[token.start as usize..end as usize];
+        let message = format!("`{text}` has no meaning here");
+        let mut diagnostic = Diagnostic::new(Code::E0014, span, message).note(note);
+        if let Some(instead) = instead {
+            let name = instead.trim_end();
+            diagnostic = diagnostic.label(format!("expected `{name}`")).fix(
+                format!("write `{name}`"),
+                span,
+                instead,
+            );
+        }
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Each such character gets one message, wherever else it stands.
+    fn foreign_space(&mut self, token: Token) {
+        let character = self.tokens.slice(token).chars().next().unwrap_or(' ');
+        if !self.spaces.insert(character) {
+            return;
+        }
+        let span = self.span(token.start, token.end);
+        let code = u32::from(character);
+        let message = format!("this looks like white space, but is the character U+{code:04X}");
+        let diagnostic = Diagnostic::new(Code::E0014, span, message)
+            .note("it comes with text from word processors and web pages, perhaps at more places")
+            .fix("write a space", span, " ");
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// A string between quotation marks of a word processor, or such a mark.
+    fn foreign_quote(&mut self, token: Token) {
+        let text = self.tokens.slice(token);
+        let rest = &self.tokens.text[token.end as usize..];
+        let line = rest.split(['\r', '\n']).next().unwrap_or(rest);
+        let closes = |c: char| c == '\'' || c == '"' || foreign::sign(c) == Sign::Quote;
+        let close = line.char_indices().find(|(_, c)| closes(*c));
+        let end = close.map_or(token.end, |(at, c)| token.end + (at + c.len_utf8()) as u32);
+        let span = self.span(token.start, end);
+        let message = format!("`{text}` is no quotation mark of a program");
+        let mut diagnostic = Diagnostic::new(Code::E0014, span, message)
+            .note("strings stand between `'` and `'`, wide strings between `\"` and `\"`");
+        if let Some((at, _)) = close {
+            let mended = format!("'{}'", &line[..at]);
+            diagnostic = diagnostic.fix(format!("write `{mended}`"), span, mended);
+        }
+        self.diagnostics.push(diagnostic);
+        self.skip_to = end;
+        self.push(Token {
+            kind: Kind::BadNumber,
+            end,
+            ..token
+        });
+    }
+
+    fn foreign_operator(&mut self, token: Token, kind: Kind, instead: &str) {
+        let text = self.tokens.slice(token);
+        let span = self.span(token.start, token.end);
+        let diagnostic =
+            Diagnostic::new(Code::E0014, span, format!("`{text}` is no operator here"))
+                .label(format!("expected `{instead}`"))
+                .fix(format!("write `{instead}`"), span, instead);
+        self.diagnostics.push(diagnostic);
+        self.push(Token { kind, ..token });
+    }
+
+    /// `# text`: the line is left out.
+    fn foreign_comment(&mut self, token: Token) {
+        let rest = &self.tokens.text[token.start as usize..];
+        let line = rest.find('\n').unwrap_or(rest.len());
+        self.skip_to = token.start + line as u32;
+        let span = self.span(token.start, token.end);
+        let diagnostic = Diagnostic::new(Code::E0014, span, "`#` begins no comment here")
+            .label("expected `//`")
+            .note("comments begin with `//`, or stand between `(*` and `*)`")
+            .fix("write `//`", span, "//");
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn begins_line(&self, token: Token) -> bool {
+        let before = &self.tokens.text[..token.start as usize];
+        before
+            .rsplit('\n')
+            .next()
+            .unwrap_or(before)
+            .trim()
+            .is_empty()
     }
 
     fn last_unknown(&self) -> Option<Span> {
@@ -244,9 +366,14 @@ impl Feeder<'_, '_> {
             self.diagnostics.push(diagnostic);
             return;
         }
+        let span = self.span(token.start, token.end);
         let message = format!("`{text}` is neither a number nor a name");
-        let diagnostic = Diagnostic::new(Code::E0019, self.span(token.start, token.end), message)
-            .note("names begin with a letter or an underline; numbers of another base are written like `16#1F`");
-        self.diagnostics.push(diagnostic);
+        let diagnostic = Diagnostic::new(Code::E0019, span, message);
+        self.diagnostics.push(match foreign::number(text) {
+            Some(mended) => diagnostic
+                .label(format!("expected `{mended}`"))
+                .fix(format!("write `{mended}`"), span, mended),
+            None => diagnostic.note("names begin with a letter or an underline; numbers of another base are written like `16#1F`"),
+        });
     }
 }

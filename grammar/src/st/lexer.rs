@@ -97,11 +97,17 @@ const NESTED_SEARCHES: u32 = 16;
 enum Raw {
     #[regex(r"[A-Za-z_][A-Za-z0-9_]*")]
     Word,
+    // Letters, and all that is not known to be something else.
     #[regex(
-        r"[A-Za-z_\u{80}-\u{10ffff}][A-Za-z0-9_\u{80}-\u{10ffff}]*",
+        r"[A-Za-z_\u{aa}\u{b5}\u{ba}\u{c0}-\u{d6}\u{d8}-\u{f6}\u{f8}-\u{1fff}\u{2070}-\u{218f}\u{2300}-\u{2fff}\u{3003}-\u{fefe}\u{ff00}-\u{10ffff}][A-Za-z0-9_\u{aa}\u{b5}\u{ba}\u{c0}-\u{d6}\u{d8}-\u{f6}\u{f8}-\u{1fff}\u{2070}-\u{218f}\u{2300}-\u{2fff}\u{3003}-\u{fefe}\u{ff00}-\u{10ffff}]*",
         priority = 1
     )]
     ForeignWord,
+    // Spaces, quotation marks, dashes, signs of mathematics.
+    #[regex(
+        r"[\u{80}-\u{a9}\u{ab}-\u{b4}\u{b6}-\u{b9}\u{bb}-\u{bf}\u{d7}\u{f7}\u{2000}-\u{206f}\u{2190}-\u{22ff}\u{3000}-\u{3002}\u{feff}]"
+    )]
+    ForeignSign,
     #[regex(r"[0-9][0-9_]*")]
     Int,
     #[regex(r"[0-9][0-9_]*#[0-9A-Za-z_]*")]
@@ -232,7 +238,7 @@ impl StLexer<'_, '_> {
             Raw::RoundComment => self.comment(*b"(*", *b"*)"),
             Raw::SlashComment => self.comment(*b"/*", *b"*/"),
             Raw::LineComment => Kind::Comment,
-            Raw::StrayEnd => Kind::Unknown,
+            Raw::StrayEnd | Raw::ForeignSign => Kind::Unknown,
             Raw::OpenParen => Kind::OpenParen,
             Raw::CloseParen => Kind::CloseParen,
             Raw::OpenBracket => Kind::OpenBracket,

@@ -17,6 +17,7 @@ mod depth;
 mod explain;
 mod feed;
 mod file;
+mod foreign;
 mod lexer;
 mod repair;
 mod slice;

@@ -282,6 +282,19 @@ impl Kind {
         Some(KEYWORDS[index].1)
     }
 
+    /// Whether it is an operator that compares.
+    pub(crate) fn compares(self) -> bool {
+        matches!(
+            self,
+            Self::Equal
+                | Self::NotEqual
+                | Self::Less
+                | Self::LessEqual
+                | Self::Greater
+                | Self::GreaterEqual
+        )
+    }
+
     /// Whether the parser never sees it.
     pub fn is_trivia(self) -> bool {
         matches!(

@@ -5,11 +5,13 @@ use super::declared::declared;
 use super::depth::nesting_error;
 use super::explain::Explain;
 use super::feed::{Feed, Located, feed};
+use super::foreign::translated;
 use super::lexer::Tokens;
 use super::repair::repair;
 use super::slice::{Fragment, FragmentKind};
 use super::token::Kind;
 use crate::generated::st::UnitParser;
+use iecc_ast::Symbol;
 use iecc_ast::st::{Arena, ScopeId, Unit, UnitKind};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_source::Span;
@@ -18,8 +20,13 @@ use iecc_source::Span;
 pub fn parse_unit(tokens: &Tokens<'_>, fragment: &Fragment, diagnostics: &mut Diagnostics) -> Unit {
     let mut found = Diagnostics::new();
     let feed = feed(tokens, fragment, &mut found);
+    let mut lost = Vec::new();
     let (kind, arena) = match fragment.kind {
-        FragmentKind::Unit(opener) => parse(tokens, fragment, opener, &feed, &mut found),
+        FragmentKind::Unit(opener) => {
+            let read = parse(tokens, fragment, opener, &feed, &mut found);
+            lost = read.lost;
+            (read.kind, read.arena)
+        }
         FragmentKind::Trailing => (UnitKind::Nothing, Arena::new()),
         FragmentKind::Stray => {
             stray(tokens, &feed.tokens, &mut found);
@@ -42,7 +49,15 @@ pub fn parse_unit(tokens: &Tokens<'_>, fragment: &Fragment, diagnostics: &mut Di
         arena,
         pragmas: feed.pragmas,
         has_errors,
+        lost,
     }
+}
+
+/// What the parser made of a unit.
+struct Read {
+    kind: UnitKind,
+    arena: Arena,
+    lost: Vec<Symbol>,
 }
 
 fn parse(
@@ -51,16 +66,25 @@ fn parse(
     opener: Kind,
     feed: &Feed,
     found: &mut Diagnostics,
-) -> (UnitKind, Arena) {
+) -> Read {
     if let Some(diagnostic) = nesting_error(tokens.file, &feed.tokens) {
         found.push(diagnostic);
-        return (UnitKind::Error, Arena::new());
+        return Read {
+            kind: UnitKind::Error,
+            arena: Arena::new(),
+            lost: Vec::new(),
+        };
     }
     let mut build = Build::new(tokens, fragment.start, true);
     if let Ok(kind) = run(&mut build, &feed.tokens) {
         found.append(build.diagnostics);
-        return (kind, build.arena);
+        return Read {
+            kind,
+            arena: build.arena,
+            lost: Vec::new(),
+        };
     }
+    let feed = &translated(tokens, feed, found);
     let repaired = repair(tokens, opener, feed, found);
     let mut build = Build::new(tokens, fragment.start, false);
     let kind = match run(&mut build, &repaired.tokens) {
@@ -82,7 +106,11 @@ fn parse(
         .filter(|error| !repaired.is_known(error, feed));
     news.for_each(|error| found.push(explain.error(error)));
     found.append(build.diagnostics);
-    (kind, build.arena)
+    Read {
+        kind,
+        arena: build.arena,
+        lost: build.lost,
+    }
 }
 
 fn run(build: &mut Build<'_, '_>, tokens: &[Located]) -> Result<UnitKind, SyntaxError> {

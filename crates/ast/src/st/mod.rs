@@ -143,6 +143,8 @@ pub struct Unit {
     pub pragmas: Vec<Pragma>,
     /// Whether a message with an error was given for it.
     pub has_errors: bool,
+    /// Names in declarations that could not be read.
+    pub lost: Vec<Symbol>,
 }
 
 /// What a unit is.

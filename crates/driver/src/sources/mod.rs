@@ -123,8 +123,12 @@ pub fn load(map: &mut SourceMap, path: &Path, diagnostics: &mut Diagnostics) -> 
         Ok(text) => Some(map.add(name, text)),
         Err(error) => {
             let offset = error.utf8_error().valid_up_to();
-            let message = format!("{name}: byte {offset} begins no UTF-8 character");
-            diagnostics.push(Diagnostic::without_place(Code::E0002, message));
+            let message = match error.as_bytes() {
+                [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => format!("{name} is UTF-16 text"),
+                _ => format!("{name}: byte {offset} begins no UTF-8 character"),
+            };
+            let diagnostic = Diagnostic::without_place(Code::E0002, message);
+            diagnostics.push(diagnostic.note("save the file in the encoding UTF-8"));
             None
         }
     }

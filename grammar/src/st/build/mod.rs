@@ -12,7 +12,8 @@ mod types;
 mod unit;
 
 use super::Tokens;
-use super::token::Token;
+use super::token::{Kind, Token};
+use iecc_ast::Symbol;
 use iecc_ast::st::{Arena, Id, Label, Member, Stmt, VarSection};
 use iecc_ast::st::{Expr, Ident, ProgramConfig, Resource, Task};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
@@ -44,6 +45,8 @@ pub(crate) struct Build<'b, 't> {
     pub(crate) diagnostics: Diagnostics,
     /// Mistakes the parser has recovered from.
     pub(crate) errors: Vec<SyntaxError>,
+    /// Names in declarations that could not be read.
+    pub(crate) lost: Vec<Symbol>,
     /// Whether to stop at the first mistake.
     strict: bool,
     too_deep: bool,
@@ -101,6 +104,7 @@ impl<'b, 't> Build<'b, 't> {
             arena: Arena::new(),
             diagnostics: Diagnostics::new(),
             errors: Vec::new(),
+            lost: Vec::new(),
             strict,
             too_deep: false,
         }
@@ -139,6 +143,15 @@ impl<'b, 't> Build<'b, 't> {
         }
         self.errors.push(recovery.error);
         Ok(())
+    }
+
+    /// Notes the names in a declaration that could not be read.
+    pub(crate) fn lost(&mut self, start: u32, end: u32) {
+        let list = &self.tokens.list;
+        let first = list.partition_point(|token| token.start < start);
+        let inside = list[first..].iter().take_while(|token| token.end <= end);
+        let words = inside.filter(|token| token.kind == Kind::Word);
+        self.lost.extend(words.map(|token| token.symbol));
     }
 
     /// Whether so much is wrong that more messages are of no use.

@@ -7,12 +7,36 @@ impl Repair<'_, '_> {
     /// Closes the block a closer belongs to, and those in it that have no closer of their own.
     pub(super) fn close(&mut self, token: Located) {
         let Some(index) = self.block_of_closer(token) else {
-            return self.close_wrongly(token);
+            if !self.close_by_another(token) {
+                self.close_wrongly(token);
+            }
+            return;
         };
         self.close_above(index + 1, token);
         self.blocks.pop();
         self.push(token);
         self.after_closer(token.1.kind);
+    }
+
+    /// `IF … END_FOR`: the end of another statement, in line with the one that is open.
+    fn close_by_another(&mut self, token: Located) -> bool {
+        let Some(block) = self.blocks.last().copied() else {
+            return false;
+        };
+        let column = self.indentation(token);
+        let aligned = column.is_some() && column == self.indentation(block.opener);
+        let ready = opens_statement(block.kind()) && block.awaits.is_none();
+        let other = closes_statement(token.1.kind) && block.kind() != Kind::Repeat;
+        if !aligned || !ready || !other {
+            return false;
+        }
+        self.wrong_closer(block, token);
+        self.blocks.pop();
+        let (start, mut mended, end) = token;
+        mended.kind = closer(block.kind());
+        self.push((start, mended, end));
+        self.after_closer(mended.kind);
+        true
     }
 
     fn after_closer(&mut self, kind: Kind) {

@@ -125,6 +125,8 @@ struct Repair<'r, 't> {
     begin: usize,
     /// Whether a name must come next.
     name_due: bool,
+    /// Whether a value behind RETURN is being left out.
+    skips_value: bool,
     /// Reserved words that a message calls wrong names.
     misnamed: BTreeSet<Symbol>,
 }
@@ -143,6 +145,7 @@ impl<'r, 't> Repair<'r, 't> {
             pending: false,
             begin: 0,
             name_due: false,
+            skips_value: false,
             misnamed: BTreeSet::new(),
         };
         repair.open_unit(opener);
@@ -177,6 +180,9 @@ impl<'r, 't> Repair<'r, 't> {
         let (start, mut token, end) = self.feed.tokens[at];
         if self.is_misnamed(at) {
             token.kind = Kind::Word;
+        }
+        if self.skips_value(at, token.kind) {
+            return;
         }
         self.settle_name(token);
         let ends = token.kind == Kind::Semicolon || self.is_structural(token.kind);

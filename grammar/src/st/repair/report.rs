@@ -23,7 +23,7 @@ impl Repair<'_, '_> {
             }
             None => diagnostic.also(self.span(end, end), format!("expected {closer} here")),
         };
-        if block.kind() == Kind::If && self.follows_else(block.opener) {
+        if block.kind() == Kind::If && self.has_else_if(block.opener, cause) {
             diagnostic = diagnostic.note(
                 "`ELSE IF` begins an IF in the ELSE, with an END_IF of its own; `ELSIF` does not",
             );
@@ -39,9 +39,18 @@ impl Repair<'_, '_> {
         self.report(diagnostic);
     }
 
-    fn follows_else(&self, opener: Located) -> bool {
-        let at = self.feed.tokens.partition_point(|token| token.0 < opener.0);
-        at > 0 && self.feed.tokens[at - 1].1.kind == Kind::Else
+    /// Whether an IF stands right behind ELSE, or has such an IF in it.
+    fn has_else_if(&self, opener: Located, cause: Option<Located>) -> bool {
+        let list = &self.feed.tokens;
+        let first = list.partition_point(|token| token.0 < opener.0);
+        let last = cause.map_or(list.len(), |cause| {
+            list.partition_point(|token| token.0 < cause.0)
+        });
+        let kinds: Vec<Kind> = list[first.saturating_sub(1)..last]
+            .iter()
+            .map(|token| token.1.kind)
+            .collect();
+        kinds.windows(2).any(|pair| pair == [Kind::Else, Kind::If])
     }
 
     /// A unit ends with the closer of another kind of unit.

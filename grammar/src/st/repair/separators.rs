@@ -91,6 +91,12 @@ impl Repair<'_, '_> {
         let mut diagnostic = Diagnostic::new(Code::E0031, place, format!("{name} is missing"))
             .label(format!("expected {name}"))
             .fix(format!("put in {name}"), place, format!(" {name}"));
+        if self.tokens.text[end as usize..]
+            .trim_start()
+            .starts_with('{')
+        {
+            diagnostic = diagnostic.note("`{` begins a pragma, not a block");
+        }
         if let Some(block) = self.blocks.last() {
             let opener = block.opener;
             diagnostic = diagnostic.also(self.span_of(opener), format!("{name} of this"));
@@ -144,9 +150,18 @@ impl Repair<'_, '_> {
             let opener = self.blocks[self.blocks.len() - 1].kind();
             opener.opens_section() && !matches!(opener, Kind::VarConfig | Kind::VarAccess)
         };
-        if section && !self.pending && assigns && kind == Kind::Word {
+        let begins = section && !self.pending && assigns && kind == Kind::Word;
+        if begins && !self.section_goes_on(at) {
             self.leave_declarations(self.feed.tokens[at]);
         }
+    }
+
+    /// Whether the section is closed behind this, with declarations only before that: then this is a
+    /// declaration with a slip in it.
+    fn section_goes_on(&self, at: usize) -> bool {
+        let mut behind = self.feed.tokens[at..].iter().map(|token| token.1.kind);
+        let end = behind.find(|kind| self.is_structural(*kind));
+        end == Some(Kind::EndVar)
     }
 
     /// In a property stand GET and SET only. Anything else is left out, with one message; behind
@@ -222,6 +237,27 @@ impl Repair<'_, '_> {
             let inner = self.blocks.len() - 1;
             self.close_above(inner, self.feed.tokens[at]);
         }
+    }
+
+    /// Whether a token is part of a value behind RETURN, which takes none; one message for each.
+    pub(super) fn skips_value(&mut self, at: usize, kind: Kind) -> bool {
+        let ends = kind == Kind::Semicolon || self.is_structural(kind);
+        if ends || self.skips_value {
+            self.skips_value &= !ends;
+            return self.skips_value;
+        }
+        if self.last_kind() != Some(Kind::Return) || self.on_new_line(at) || !begins_value(kind) {
+            return false;
+        }
+        let span = self.span_of(self.feed.tokens[at]);
+        let diagnostic = Diagnostic::new(Code::E0010, span, "RETURN takes no value")
+            .label("expected `;` before this")
+            .note(
+                "what a function gives is assigned to its name before: `Twice := 2 * a; RETURN;`",
+            );
+        self.report(diagnostic);
+        self.skips_value = true;
+        true
     }
 
     /// Whether a statement or declaration must have ended before this token.
@@ -332,6 +368,24 @@ impl Repair<'_, '_> {
 
 fn begins_statement(kind: Kind) -> bool {
     matches!(kind, Kind::Word | Kind::This | Kind::Super | Kind::Direct)
+}
+
+fn begins_value(kind: Kind) -> bool {
+    begins_statement(kind)
+        || matches!(
+            kind,
+            Kind::Int
+                | Kind::Real
+                | Kind::Based
+                | Kind::True
+                | Kind::False
+                | Kind::OpenParen
+                | Kind::Minus
+                | Kind::Not
+                | Kind::String
+                | Kind::Time
+                | Kind::TypePrefix
+        )
 }
 
 fn is_jump(kind: Kind) -> bool {

@@ -5,7 +5,7 @@ use crate::st::constant::{Const, round_to};
 use crate::st::elementary::El;
 use crate::st::types::{ReferenceKind, TypeId, TypeKind};
 use iecc_ast::st::{self, ExprKind, Literal, TimeKind};
-use iecc_diag::Code as Message;
+use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::TextRange;
 use std::rc::Rc;
 
@@ -219,7 +219,12 @@ impl Body<'_, '_> {
         }
         if !(el.is_int() || el.is_bits()) {
             let message = format!("a number is no {}", el.name());
-            self.error(Message::E2020, range, message);
+            let mut diagnostic = Diagnostic::new(Message::E2020, self.span(range), message);
+            if el.is_duration() {
+                let note = format!("a duration has a unit: T#{number}ms, T#{number}s");
+                diagnostic = diagnostic.note(note);
+            }
+            self.report(diagnostic);
             return None;
         }
         let (low, high) = el.range();

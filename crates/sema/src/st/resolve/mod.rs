@@ -288,13 +288,32 @@ impl Analysis<'_> {
         }
         let message = format!("no type is named `{}`", self.text(name));
         let mut diagnostic = Diagnostic::new(Code::E1010, span, message);
-        let candidates = self.visible(scope.namespace);
+        if self.text(name).eq_ignore_ascii_case("VOID") {
+            let note = "what gives no value is declared without `:` and a type";
+            self.report(diagnostic.note(note));
+            return;
+        }
+        let mut candidates = self.visible(scope.namespace);
+        candidates.retain(|candidate| self.names_type(scope.namespace, *candidate));
         let known = El::ALL.iter().flat_map(|el| [el.name(), el.short_name()]);
         let candidates = candidates.into_iter().map(|c| self.names.text(c));
         if let Some(close) = iecc_diag::closest(self.text(name), candidates.chain(known)) {
             diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
         }
         self.report(diagnostic);
+    }
+
+    /// Whether variables can be declared of what a name stands for.
+    fn names_type(&self, namespace: NamespaceId, name: Symbol) -> bool {
+        let defs = self.lookup(namespace, name).first();
+        defs.is_some_and(|def| match def {
+            Def::Type(_) => true,
+            Def::Pou(pou) => match self.pou(*pou).kind {
+                st::PouKind::FunctionBlock | st::PouKind::Class | st::PouKind::Interface => true,
+                st::PouKind::Function | st::PouKind::Program => false,
+            },
+            Def::Global(_) | Def::Namespace(_) => false,
+        })
     }
 
     /// Elementary types, strings without a length, generic names.

@@ -3,7 +3,7 @@
 use crate::st::body::Body;
 use crate::st::signature::{PouId, Var};
 use iecc_ast::Symbol;
-use iecc_ast::st::{self, Argument, ArgumentKind, SectionKind};
+use iecc_ast::st::{self, Argument, ArgumentKind, BinaryOp, ExprKind, SectionKind};
 use iecc_diag::{Code as Message, Diagnostic};
 use iecc_source::TextRange;
 
@@ -17,6 +17,7 @@ impl Body<'_, '_> {
     ) -> Vec<(Var, Argument)> {
         let written: Vec<Argument> = self.arena()[arguments].to_vec();
         let parameters = self.an.all_parameters(pou);
+        let written = self.without_comparisons(written, &parameters);
         self.check_positions(pou, &parameters, &written, range);
         let mut matched: Vec<(Var, Argument)> = Vec::with_capacity(written.len());
         let mut by_position = parameters.iter();
@@ -92,6 +93,54 @@ impl Body<'_, '_> {
         if positional > 0 && positional == written.len() {
             self.require_positions(pou, parameters, positional, range);
         }
+    }
+
+    /// Arguments but those like `speed = 5`, which compare where a parameter is to be given.
+    fn without_comparisons(&mut self, written: Vec<Argument>, parameters: &[Var]) -> Vec<Argument> {
+        let named = |argument: &Argument| argument.kind != ArgumentKind::Positional;
+        let by_name = written.iter().any(named);
+        let mut kept = Vec::with_capacity(written.len());
+        for argument in written {
+            match self.compared_parameter(&argument, parameters) {
+                Some((name, sign)) if by_name || !self.own_symbol(name) => {
+                    let name = self.text(name);
+                    let message = format!("`{name}` is compared where it is to be given a value");
+                    let span = self.span(sign);
+                    let diagnostic = Diagnostic::new(Message::E3017, span, message)
+                        .label("expected `:=`")
+                        .fix("give the parameter with `:=`", span, ":=");
+                    self.report(diagnostic);
+                }
+                Some(_) | None => kept.push(argument),
+            }
+        }
+        kept
+    }
+
+    /// The parameter that an argument by position compares with something, and where.
+    fn compared_parameter(
+        &self,
+        argument: &Argument,
+        parameters: &[Var],
+    ) -> Option<(Symbol, TextRange)> {
+        let arena = self.arena();
+        let value = argument
+            .value
+            .filter(|_| argument.kind == ArgumentKind::Positional)?;
+        let ExprKind::Binary {
+            op: BinaryOp::Equal,
+            op_start,
+            left,
+            ..
+        } = arena[value].kind
+        else {
+            return None;
+        };
+        let ExprKind::Name(name) = arena[left].kind else {
+            return None;
+        };
+        let known = parameters.iter().any(|var| var.name == name);
+        known.then(|| (name, TextRange::new(op_start, op_start + 1)))
     }
 
     /// Arguments by position reach to the last input and in-out.

@@ -268,13 +268,23 @@ impl Body<'_, '_> {
                 Some(Def::Pou(pou)) if self.an.pou(*pou).kind == PouKind::Program => {
                     return self.instance_callee(id);
                 }
-                Some(_) => {
-                    let message = format!("`{}` is no function", self.text(name));
-                    self.error(Message::E1018, range, message);
-                }
+                Some(&def) => self.no_function(def, name, range),
             }
             None
         })
+    }
+
+    fn no_function(&mut self, def: Def, name: Symbol, range: TextRange) {
+        let name = self.text(name);
+        let message = format!("`{name}` is no function");
+        let mut diagnostic = Diagnostic::new(Message::E1018, self.span(range), message);
+        if let Def::Pou(pou) = def
+            && self.an.pou(pou).kind == PouKind::FunctionBlock
+        {
+            let note = format!("it is a block: declare an instance `x : {name};` and call that");
+            diagnostic = diagnostic.note(note);
+        }
+        self.report(diagnostic);
     }
 
     fn unknown_function(&mut self, name: Symbol, range: TextRange) {
@@ -369,7 +379,11 @@ impl Body<'_, '_> {
             }
         }
         let message = format!("{} cannot be called", self.type_name(operand.ty));
-        self.error(Message::E1018, operand.range, message);
+        let mut diagnostic = Diagnostic::new(Message::E1018, self.span(operand.range), message);
+        if let TypeKind::Array { .. } = self.an.types.base(operand.ty) {
+            diagnostic = diagnostic.note("an element is written with square brackets: a[3]");
+        }
+        self.report(diagnostic);
         None
     }
 }

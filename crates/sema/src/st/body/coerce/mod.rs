@@ -31,6 +31,12 @@ impl Body<'_, '_> {
             let note = "a pointer stands for a variable of its own type: what lies there is not looked at as another";
             diagnostic = diagnostic.note(note);
         }
+        if let (TypeKind::Text { wide: a, .. }, TypeKind::Text { wide: b, .. }) =
+            (types.base(from.ty), types.base(to))
+            && a != b
+        {
+            diagnostic = diagnostic.note("`'text'` is a STRING, `\"text\"` a WSTRING");
+        }
         if let (Some(a), Some(b)) = (types.elementary(from.ty), types.elementary(to)) {
             let function = format!("{}_TO_{}", a.short_name(), b.short_name());
             diagnostic = diagnostic.note(format!("{function} converts it, if that is meant"));

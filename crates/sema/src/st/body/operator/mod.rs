@@ -187,12 +187,37 @@ impl Body<'_, '_> {
         if matches!(op, BinaryOp::AndThen | BinaryOp::OrElse) {
             return self.short_circuit(op, left, right, range);
         }
+        let chained = compares(op) && self.is_comparison(left);
         self.in_place(|body| {
             let mut left = body.expr(left, inner);
             let earlier = Some(&mut left);
             let right = body.next_operand(earlier, |body| body.expr(right, inner));
+            if chained && body.is_chain(&right) {
+                return body.chain_of_comparisons(range);
+            }
             body.binary_on(op, left, right, range, want)
         })
+    }
+
+    fn chain_of_comparisons(&mut self, range: TextRange) -> Operand {
+        let message = "this compares what a comparison gives, which is a BOOL, with a number";
+        let diagnostic = Diagnostic::new(Message::E2029, self.span(range), message);
+        self.report(diagnostic.note("two comparisons are joined: `0 < x AND x < 10`"));
+        Operand::error(range)
+    }
+
+    fn is_comparison(&self, expr: st::Id<st::Expr>) -> bool {
+        matches!(self.arena()[expr].kind, st::ExprKind::Binary { op, .. } if compares(op))
+    }
+
+    /// Whether what a comparison is compared with is a number that is no truth value.
+    fn is_chain(&self, right: &Operand) -> bool {
+        let el = self.an.types.elementary(right.ty);
+        let literal = match right.as_const() {
+            Some(Const::Int(value)) => right.ty == TypeId::UNTYPED_INT && !(0..=1).contains(value),
+            Some(_) | None => right.ty == TypeId::UNTYPED_REAL,
+        };
+        literal || el.is_some_and(El::is_num)
     }
 
     /// An operator on operands that were looked at.
@@ -370,7 +395,13 @@ impl Body<'_, '_> {
                 } else {
                     format!("`{}` takes numbers, not {name}", op.as_str())
                 };
-                self.error(Message::E2027, operand.range, message);
+                let mut diagnostic =
+                    Diagnostic::new(Message::E2027, self.span(operand.range), message);
+                let text = matches!(self.an.types.base(operand.ty), TypeKind::Text { .. });
+                if text && op == BinaryOp::Add {
+                    diagnostic = diagnostic.note("CONCAT joins strings: CONCAT(a, b)");
+                }
+                self.report(diagnostic);
                 return None;
             }
         }

@@ -71,9 +71,13 @@ impl Body<'_, '_> {
     }
 
     fn unknown_name(&mut self, name: Symbol, range: TextRange) -> Operand {
+        if self.an.unit(self.unit).lost.contains(&name) {
+            return Operand::error(range);
+        }
         let message = format!("no variable is named `{}`", self.text(name));
         let mut diagnostic = Diagnostic::new(Message::E1012, self.span(range), message);
         let mut candidates = self.an.visible(self.namespace);
+        candidates.retain(|candidate| !self.is_library_unit(*candidate));
         let mut at = self.pou;
         while let Some(pou) = at {
             let pou = self.an.pou(pou);
@@ -86,11 +90,23 @@ impl Body<'_, '_> {
             let (home, text) = (self.text(home), self.text(name));
             let note = format!("it is a value of `{home}`, which is named with it: {home}.{text}");
             diagnostic = diagnostic.note(note);
+        } else if let Some(note) = word_from_elsewhere(self.text(name)) {
+            diagnostic = diagnostic.note(note);
         } else if let Some(close) = self.an.similar(name, candidates) {
             diagnostic = diagnostic.note(format!("did you mean `{close}`?"));
         }
         self.report(diagnostic);
         Operand::error(range)
+    }
+
+    /// Whether a name is that of a function or block of the library, which is no variable.
+    fn is_library_unit(&self, name: Symbol) -> bool {
+        let defs = self.an.lookup(self.namespace, name);
+        let library = |def: &Def| match def {
+            Def::Pou(pou) => self.an.is_library(self.an.pou(*pou).unit),
+            Def::Type(_) | Def::Global(_) | Def::Namespace(_) => false,
+        };
+        defs.first().is_some_and(library)
     }
 
     /// A variable of the unit, of what it belongs to, or of what that extends.
@@ -217,4 +233,38 @@ impl Body<'_, '_> {
         }
         false
     }
+}
+
+/// What words of other languages are here.
+fn word_from_elsewhere(name: &str) -> Option<&'static str> {
+    const WORDS: [(&str, &str); 9] = [
+        (
+            "BREAK",
+            "EXIT leaves a loop; the statements of a CASE end before the next label",
+        ),
+        (
+            "DEFAULT",
+            "what has no label of its own stands behind ELSE, without a colon",
+        ),
+        (
+            "OTHERWISE",
+            "what has no label of its own stands behind ELSE, without a colon",
+        ),
+        (
+            "NEXT",
+            "CONTINUE begins the next pass of a loop; END_FOR ends FOR",
+        ),
+        ("ENDIF", "a block ends with END_IF"),
+        ("NIL", "a reference to nothing is NULL"),
+        ("NONE", "a reference to nothing is NULL"),
+        ("SELF", "the instance itself is THIS"),
+        (
+            "BEGIN",
+            "statements stand between THEN, DO or ELSE and the END_ of their block",
+        ),
+    ];
+    let known = WORDS
+        .iter()
+        .find(|(word, _)| name.eq_ignore_ascii_case(word));
+    known.map(|(_, note)| *note)
 }
