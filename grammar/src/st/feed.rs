@@ -169,7 +169,7 @@ impl Feeder<'_, '_> {
             Sign::Operator(kind, instead) => return self.foreign_operator(token, kind, instead),
             Sign::Nothing => {}
         }
-        if text == "#" && self.begins_line(token) {
+        if text == "#" && foreign::begins_line(self.tokens.text, token.start) {
             return self.foreign_comment(token);
         }
         self.hole = true;
@@ -232,16 +232,17 @@ impl Feeder<'_, '_> {
     fn foreign_quote(&mut self, token: Token) {
         let text = self.tokens.slice(token);
         let rest = &self.tokens.text[token.end as usize..];
-        let line = rest.split(['\r', '\n']).next().unwrap_or(rest);
         let closes = |c: char| c == '\'' || c == '"' || foreign::sign(c) == Sign::Quote;
-        let close = line.char_indices().find(|(_, c)| closes(*c));
+        let ends = |c: char| matches!(c, '\r' | '\n');
+        let close = rest.char_indices().find(|(_, c)| closes(*c) || ends(*c));
+        let close = close.filter(|(_, c)| closes(*c));
         let end = close.map_or(token.end, |(at, c)| token.end + (at + c.len_utf8()) as u32);
         let span = self.span(token.start, end);
         let message = format!("`{text}` is no quotation mark of a program");
         let mut diagnostic = Diagnostic::new(Code::E0014, span, message)
             .note("strings stand between `'` and `'`, wide strings between `\"` and `\"`");
         if let Some((at, _)) = close {
-            let mended = format!("'{}'", &line[..at]);
+            let mended = format!("'{}'", &rest[..at]);
             diagnostic = diagnostic.fix(format!("write `{mended}`"), span, mended);
         }
         self.diagnostics.push(diagnostic);
@@ -275,16 +276,6 @@ impl Feeder<'_, '_> {
             .note("comments begin with `//`, or stand between `(*` and `*)`")
             .fix("write `//`", span, "//");
         self.diagnostics.push(diagnostic);
-    }
-
-    fn begins_line(&self, token: Token) -> bool {
-        let before = &self.tokens.text[..token.start as usize];
-        before
-            .rsplit('\n')
-            .next()
-            .unwrap_or(before)
-            .trim()
-            .is_empty()
     }
 
     fn last_unknown(&self) -> Option<Span> {

@@ -336,8 +336,12 @@ impl Translator<'_, '_> {
     }
 
     fn begins_line(&self) -> bool {
-        let before = &self.tokens.text[..self.list[self.at].0 as usize];
-        let line = before.rsplit('\n').next().unwrap_or(before);
-        line.trim().is_empty()
+        begins_line(self.tokens.text, self.list[self.at].0)
     }
+}
+
+/// Whether nothing but white space stands before a byte on its line.
+pub(crate) fn begins_line(text: &str, at: u32) -> bool {
+    let before = text[..at as usize].trim_end_matches([' ', '\t']);
+    before.is_empty() || before.ends_with('\n')
 }

@@ -377,6 +377,124 @@ fn one_token_less_rarely_gives_more_than_one_message() {
     assert!(counts[3] * 100 <= wrong * 3, "{counts:?}");
 }
 
+/// Whoever comes from another language is told what is written here, once for each slip.
+#[test]
+fn signs_and_words_of_other_languages_are_known() {
+    for (body, code, place, instead) in [
+        ("IF a == b THEN x := 1; END_IF;", Code::E0010, "==", "="),
+        ("IF a != b THEN x := 1; END_IF;", Code::E0014, "!=", "<>"),
+        ("x := a && b;", Code::E0010, "&&", "AND"),
+        ("x := a || b;", Code::E0014, "||", "OR"),
+        ("x := !a;", Code::E0014, "!", "NOT "),
+        ("x := a % b;", Code::E0010, "%", " MOD "),
+        ("x := a %2;", Code::E0010, "%", " MOD "),
+        ("x := 0xFF;", Code::E0019, "0xFF", "16#FF"),
+        ("x := 0b101;", Code::E0019, "0b101", "2#101"),
+        ("t(PT := 500ms);", Code::E0019, "500ms", "T#500ms"),
+        ("x := 3,14;", Code::E0010, ",", "."),
+        ("x := .5;", Code::E0010, ".", "0"),
+        ("IF x := 1 THEN y := 2; END_IF;", Code::E0010, ":=", "="),
+        (
+            "IF a THEN x := 1;\nELSEIF b THEN x := 2; END_IF;",
+            Code::E0010,
+            "ELSEIF",
+            "ELSIF",
+        ),
+        ("IF a THEN x := 1; ENDIF;", Code::E0010, "ENDIF", "END_IF"),
+        ("IF a THEN x := 1; END IF;", Code::E0010, "END IF", "END_IF"),
+        (
+            "WHILE a DO x := 1; EndWhile;",
+            Code::E0010,
+            "EndWhile",
+            "END_WHILE",
+        ),
+        (
+            "VAR a : INT;\nENDVAR\na := 1;",
+            Code::E0010,
+            "ENDVAR",
+            "END_VAR",
+        ),
+        (
+            "IF a THEN\n  x := 1;\nEND_FOR;",
+            Code::E0012,
+            "END_FOR",
+            "END_IF",
+        ),
+        ("# a remark that's long\nx := 1;", Code::E0014, "#", "//"),
+    ] {
+        one(body, code, place);
+        assert_eq!(fix(body).as_deref(), Some(instead), "{body}");
+    }
+    for (body, place) in [
+        ("x++;", "++"),
+        ("a.b--;", "--"),
+        ("x += 2;", "+="),
+        ("x /= 2;", "/="),
+    ] {
+        one(body, Code::E0010, place);
+    }
+    one("x := a ? 1 : 2;", Code::E0014, "?");
+    one("RETURN a + 1;", Code::E0010, "a");
+}
+
+#[test]
+fn characters_of_word_processors_are_known() {
+    for (body, place, instead) in [
+        ("x := “two words”;", "“two words”", "'two words'"),
+        ("x := ‘a’ + b;", "‘a’", "'a'"),
+        ("x := a – b;", "–", "-"),
+        ("x := a − 1;", "−", "-"),
+        ("x := a ≤ b;", "≤", "<="),
+        ("x := a ≠ b;", "≠", "<>"),
+        ("x := 2 × b;", "×", "*"),
+        ("x :=\u{a0}1;\u{a0}y :=\u{a0}2;", "\u{a0}", " "),
+        ("x := 1;\u{200b}", "\u{200b}", " "),
+    ] {
+        one(body, Code::E0014, place);
+        assert_eq!(fix(body).as_deref(), Some(instead), "{body}");
+    }
+}
+
+/// What looks like a slip elsewhere and is right here stays as it is.
+#[test]
+fn signs_that_only_look_foreign_mean_what_they_mean() {
+    for body in [
+        "x := a--b;",
+        "x := a - -b;",
+        "x := a&b & c;",
+        "x := %IX0.1;",
+        "endif(a := 1);",
+        "elseif := 1;",
+        "end := a;",
+        "IF elseif THEN x := 1; END_IF;",
+    ] {
+        assert!(messages_in_body(body).is_empty(), "{body}");
+    }
+}
+
+/// What the first message would write instead.
+fn fix(body: &str) -> Option<String> {
+    let parsed = parse(&format!("PROGRAM p\n{body}\nEND_PROGRAM\n"), Dialect::Iec);
+    let first = parsed.diagnostics.iter().next()?;
+    first.fix.as_ref().map(|fix| fix.replacement.clone())
+}
+
+/// A declaration that cannot be read is told once, and leaves its section open.
+#[test]
+fn declarations_with_a_slip_stay_declarations() {
+    for (line, place) in [
+        ("x INT;", "INT"),
+        ("INT x;", "x"),
+        ("y := INT;", ":="),
+        ("z : INT = 5;", "="),
+    ] {
+        let text = format!(
+            "PROGRAM p\nVAR\n  a : INT;\n  {line}\n  b : INT;\nEND_VAR\na := b;\nEND_PROGRAM"
+        );
+        assert_eq!(messages(&text), [(Code::E0010, place.to_owned())], "{line}");
+    }
+}
+
 /// What recovery costs must not depend on what stands around the mistake.
 #[test]
 fn many_mistakes_take_linear_time() {
@@ -391,6 +509,16 @@ fn many_mistakes_take_linear_time() {
         "CASE a OF b: ".repeat(50_000),
         "(* (* *) 'a ".repeat(50_000),
         "? ".repeat(100_000),
+        format!("VAR {} END_VAR", "x := 1; ".repeat(50_000)),
+        "ELSEIF a ".repeat(50_000),
+        "x := “a” ".repeat(50_000),
+        "x := “a ".repeat(50_000),
+        "x++; ".repeat(50_000),
+        "RETURN 1 ".repeat(50_000),
+        "# ".repeat(50_000),
+        "\u{a0}≤ ".repeat(50_000),
+        "END IF; ".repeat(50_000),
+        "IF a THEN ELSE ".repeat(50_000),
     ] {
         assert!(!messages_in_body(&body).is_empty(), "{}", &body[..20]);
     }

@@ -283,3 +283,58 @@ fn a_run_without_a_trace_shows_how_it_ended() {
     );
     assert_eq!((output.stdout, output.stderr), (Vec::new(), Vec::new()));
 }
+
+/// Whoever begins, or comes from another language, is told what is written here.
+#[test]
+fn common_mistakes_are_told_with_what_to_write() {
+    let text = "FUNCTION_BLOCK Motor
+VAR_INPUT start : BOOL; END_VAR
+END_FUNCTION_BLOCK
+FUNCTION Report : VOID
+END_FUNCTION
+PROGRAM Main
+VAR x : INT; s : STRING; t : TON; a : ARRAY[0..9] OF INT; b : BOOL; z : TONN; END_VAR
+s := \"text\";
+Motor(start := TRUE);
+x := a(3);
+s := s + 'more';
+t(IN := b, PT := 500);
+CASE x OF
+  1: x := 2; BREAK;
+END_CASE;
+b := 0 < x < 10;
+END_PROGRAM
+";
+    let folder = folder(&[("a.st", text)]);
+    let output = iecc(folder.path(), &["check", "a.st"]);
+    let messages = stderr(&output);
+    for told in [
+        "`'text'` is a STRING, `\"text\"` a WSTRING",
+        "declare an instance `x : Motor;` and call that",
+        "an element is written with square brackets: a[3]",
+        "CONCAT joins strings: CONCAT(a, b)",
+        "a duration has a unit: T#500ms, T#500s",
+        "EXIT leaves a loop",
+        "two comparisons are joined: `0 < x AND x < 10`",
+        "what gives no value is declared without `:` and a type",
+        "did you mean `TON`?",
+    ] {
+        assert!(messages.contains(told), "{told}\n{messages}");
+    }
+    assert!(messages.ends_with("\n9 errors\n"), "{messages}");
+}
+
+#[test]
+fn files_in_another_encoding_are_told_what_to_do() {
+    let folder = folder(&[]);
+    for (bytes, told) in [
+        (&b"\xff\xfeP\0"[..], "a.st is UTF-16 text"),
+        (b"PROGRAM \xe4", "byte 8 begins no UTF-8 character"),
+    ] {
+        fs::write(folder.path().join("a.st"), bytes).expect("written");
+        let output = iecc(folder.path(), &["check", "a.st"]);
+        let messages = stderr(&output);
+        assert!(messages.contains(told), "{messages}");
+        assert!(messages.contains("UTF-8"), "{messages}");
+    }
+}

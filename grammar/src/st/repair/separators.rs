@@ -159,7 +159,9 @@ impl Repair<'_, '_> {
     /// Whether the section is closed behind this, with declarations only before that: then this is a
     /// declaration with a slip in it.
     fn section_goes_on(&self, at: usize) -> bool {
-        let mut behind = self.feed.tokens[at..].iter().map(|token| token.1.kind);
+        const LONGEST: usize = 1024;
+        let behind = self.feed.tokens[at..].iter().take(LONGEST);
+        let mut behind = behind.map(|token| token.1.kind);
         let end = behind.find(|kind| self.is_structural(*kind));
         end == Some(Kind::EndVar)
     }
