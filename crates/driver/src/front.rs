@@ -238,11 +238,12 @@ pub fn compile(
     options: &FrontOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<Module> {
-    let compiled = compile_with_tick(map, sources, options, diagnostics)?;
-    Some(compiled.module)
+    let program = check(map, sources, options, diagnostics)?;
+    named_module(&program, options, diagnostics)
 }
 
-/// As [`compile`], and says what tick the tasks want.
+/// As [`compile`], for whoever wants to run the program: it must have something to run. Says what tick
+/// the tasks want.
 pub fn compile_with_tick(
     map: &SourceMap,
     sources: &Sources,
@@ -250,13 +251,27 @@ pub fn compile_with_tick(
     diagnostics: &mut Diagnostics,
 ) -> Option<Compiled> {
     let program = check(map, sources, options, diagnostics)?;
+    if program.tasks.is_empty() {
+        let message = "there is no program to run";
+        diagnostics.push(Diagnostic::without_place(Code::E6020, message));
+        return None;
+    }
     let tick_ns = tick_ns(&program);
-    let mut module = lowered(&program, options, diagnostics)?;
+    let module = named_module(&program, options, diagnostics)?;
+    Some(Compiled { module, tick_ns })
+}
+
+fn named_module(
+    program: &hir::Program,
+    options: &FrontOptions,
+    diagnostics: &mut Diagnostics,
+) -> Option<Module> {
+    let mut module = lowered(program, options, diagnostics)?;
     rename(&mut module, &options.renames, diagnostics)?;
     if let Some(name) = &options.name {
         module.name.clone_from(name);
     }
-    Some(Compiled { module, tick_ns })
+    Some(module)
 }
 
 /// The module of a program, with the image after prescan.

@@ -85,6 +85,7 @@ pub(crate) struct Analysis<'a> {
     /// The unit with a body that a unit of the source is.
     pub pou_of_unit: FxHashMap<UnitId, PouId>,
     pub storage: StorageTypes,
+    pub memory: super::memory::Memory,
     pub hir: hir::Program,
     pub addresses: super::address::Addresses,
     /// The instances of programs, by name.

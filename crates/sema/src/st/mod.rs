@@ -26,6 +26,7 @@ mod declare;
 pub mod elementary;
 mod initial;
 mod lint;
+mod memory;
 mod objects;
 mod program;
 mod recheck;
@@ -240,6 +241,7 @@ impl<'a> Analysis<'a> {
             elementary_names,
             pou_of_unit: FxHashMap::default(),
             storage: storage::StorageTypes::default(),
+            memory: memory::Memory::default(),
             hir: hir::Program::empty(),
             addresses: address::Addresses::default(),
             program_instances: Vec::new(),

@@ -1,6 +1,7 @@
 //! From checked units to a program that can run: instances, tasks, inputs and outputs.
 
 use super::analysis::Analysis;
+use super::memory::MAX_POINTS;
 use super::signature::{PouId, Storage, UnitId};
 use super::types::{Parts, TypeId, TypeKind};
 use crate::hir::code::Code;
@@ -37,6 +38,16 @@ impl Analysis<'_> {
                 self.configuration(unit, configuration);
             }
             None => self.single_program(),
+        }
+        self.limit_points();
+    }
+
+    /// So many values have no use, and each has a name.
+    fn limit_points(&mut self) {
+        let points = self.hir.inputs.len().max(self.hir.outputs.len());
+        if points > MAX_POINTS {
+            let message = format!("a program exchanges at most {MAX_POINTS} inputs and as many outputs");
+            self.report(Diagnostic::without_place(Message::E2007, message));
         }
     }
 
@@ -123,6 +134,8 @@ impl Analysis<'_> {
     pub(crate) fn program_instance(&mut self, program: PouId, name: &str) -> TagId {
         self.complete(program);
         let ty = self.types.intern(TypeKind::Instance(program));
+        let span = self.pou(program).span;
+        self.take_memory(ty, span);
         let storage = self.storage(ty);
         let init = self.default_init(ty);
         let span = self.pou(program).span;
@@ -213,6 +226,10 @@ impl Analysis<'_> {
         };
         let whole = self.types.is_scalar(ty) || self.types.is_text(ty);
         if whole {
+            // Whoever has more is told so.
+            if points.len() > MAX_POINTS {
+                return;
+            }
             points.push(IoPoint {
                 name: name.to_owned(),
                 place,

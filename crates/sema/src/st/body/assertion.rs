@@ -150,9 +150,16 @@ impl Body<'_, '_> {
 
     /// Two operands; the second may be an enumerator of the type of the first.
     fn pair(&mut self, values: &[st::Id<st::Expr>]) -> (Operand, Operand) {
+        if self.is_open(values[0]) && !self.is_open(values[1]) {
+            let right = self.operand(values[1], None);
+            let beside = self.number_beside(&right);
+            return (self.operand(values[0], beside), right);
+        }
         let left = self.operand(values[0], None);
         let named = matches!(self.an.types.base(left.ty), TypeKind::Enum(_));
-        let right = self.operand(values[1], named.then_some(left.ty));
+        let open = self.is_open(values[1]);
+        let beside = self.number_beside(&left).filter(|_| open);
+        let right = self.operand(values[1], named.then_some(left.ty).or(beside));
         (left, right)
     }
 

@@ -8,6 +8,7 @@ mod assertion;
 mod call;
 mod coerce;
 mod connect;
+mod context;
 mod edge;
 mod expr;
 mod initial_reference;

@@ -31,8 +31,11 @@ pub(crate) struct TypeScope<'s> {
     pub pou: Option<super::signature::PouId>,
 }
 
-/// Longest string.
-const MAX_TEXT: i128 = 1 << 20;
+/// Longest string: LEN is an INT.
+const MAX_TEXT: i128 = 32_767;
+
+/// Most dimensions of an array.
+const MAX_DIMENSIONS: usize = 16;
 
 /// The length of strings that do not say it.
 pub(crate) const DEFAULT_TEXT: u32 = 80;
@@ -389,6 +392,11 @@ impl Analysis<'_> {
         let Some(length) = self.constant_int(scope, length, TypeId::UNTYPED_INT) else {
             return TypeId::ERROR;
         };
+        // What a function of the library puts together is cut there.
+        let length = match self.is_library(scope.unit) {
+            true => length.min(MAX_TEXT),
+            false => length,
+        };
         if !(0..=MAX_TEXT).contains(&length) {
             let span = self.span(scope.unit, length_range);
             let message = format!("a string has between 0 and {MAX_TEXT} characters, not {length}");
@@ -416,6 +424,12 @@ impl Analysis<'_> {
         let element = self.written_type(scope, element, None);
         if element == TypeId::ERROR {
             return element;
+        }
+        if written.len() > MAX_DIMENSIONS {
+            let span = self.span(scope.unit, range);
+            let message = format!("an array has at most {MAX_DIMENSIONS} dimensions");
+            self.error(Code::E0013, span, message);
+            return TypeId::ERROR;
         }
         if open == written.len() {
             return self.types.intern(TypeKind::OpenArray {

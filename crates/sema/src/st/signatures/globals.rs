@@ -75,6 +75,7 @@ impl Analysis<'_> {
         let span = unit.span(unit.arena[global.decl.ty].range);
         let ty = self.complete_contained(ty, span);
         self.globals[id.index()].ty = ty;
+        self.take_memory(ty, span);
         if global.constant && ty != TypeId::ERROR && self.types.is_scalar(ty) {
             let value = match global.initial {
                 Some(initial) => self.constant(scope, initial.expr, ty),

@@ -356,8 +356,20 @@ impl Analysis<'_> {
         self.complete_contained(ty, unit.span(unit.arena[decl.ty].range))
     }
 
-    /// Completes the instances inside a type; gives the error type for a cycle.
+    /// Completes the instances inside a type; gives the error type for a cycle, and for what is too
+    /// large.
     pub(crate) fn complete_contained(&mut self, ty: TypeId, span: iecc_source::Span) -> TypeId {
+        if self.memory.is_known(ty) {
+            return ty;
+        }
+        let ty = self.complete_inside(ty, span);
+        if ty == TypeId::ERROR || !self.fits_memory(ty, span) {
+            return TypeId::ERROR;
+        }
+        ty
+    }
+
+    fn complete_inside(&mut self, ty: TypeId, span: iecc_source::Span) -> TypeId {
         let mut at = ty;
         loop {
             match self.types.parts(at) {

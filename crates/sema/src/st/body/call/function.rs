@@ -46,7 +46,7 @@ impl Body<'_, '_> {
         if let Some(value) = self.type_query(first, arguments, range) {
             return value;
         }
-        let mut given = self.library_arguments(first, arguments, None);
+        let mut given = self.library_arguments(functions, arguments, None, want);
         if given.has_errors() {
             return Operand::error(range);
         }

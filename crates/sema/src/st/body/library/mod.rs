@@ -5,6 +5,7 @@ mod generic;
 mod intrinsic;
 mod units;
 
+use super::context::position_of;
 use super::object::function_target;
 use super::{Body, Operand};
 use crate::st::signature::{PouId, Var};
@@ -24,7 +25,13 @@ impl Body<'_, '_> {
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
-        for &function in functions {
+        // Literals alone fit several overloads; the one that gives what is needed goes first.
+        let wanted = want.filter(|_| given.has_literals());
+        let suiting = functions
+            .iter()
+            .filter(|function| wanted.is_some_and(|want| self.suits(**function, &given, want)));
+        let candidates: Vec<PouId> = suiting.chain(functions).copied().collect();
+        for function in candidates {
             if let Some(bound) = self.bind(function, &given, want) {
                 return self.bound_call(function, bound, given, range, want);
             }
@@ -215,7 +222,10 @@ impl Body<'_, '_> {
             return None;
         }
         let want = if converts { None } else { want };
-        let mut given = self.library_arguments(functions[0], arguments, converts.then_some(source));
+        let mut given = {
+            let (source, want) = (converts.then_some(source), Some(source));
+            self.library_arguments(&functions, arguments, source, want)
+        };
         if given.has_errors() {
             return Some(Operand::error(range));
         }
@@ -234,14 +244,17 @@ impl Body<'_, '_> {
         Some(self.library(&functions, given, range, want))
     }
 
-    /// The arguments of a library function, EN and ENO left out.
+    /// The arguments of a library function, EN and ENO left out. All are of type `source`, if it is
+    /// given; else those made of literals alone take their types from others, or from what is wanted.
     pub(super) fn library_arguments(
         &mut self,
-        function: PouId,
+        functions: &[PouId],
         arguments: st::List<Argument>,
+        source: Option<TypeId>,
         want: Option<TypeId>,
     ) -> Given {
-        let parameters = self.an.library_parameters(function);
+        let parameters = self.an.library_parameters(functions[0]);
+        let (mut open, mut typed) = (Vec::new(), Vec::new());
         let written: Vec<Argument> = self.arena()[arguments].to_vec();
         let mut given = Given {
             eno: self.eno_target(arguments),
@@ -263,13 +276,30 @@ impl Body<'_, '_> {
                     given.outputs.push((name, *argument));
                 }
                 ArgumentKind::Positional | ArgumentKind::Input(_) => {
-                    if let Some(value) = argument.value {
-                        let earlier = given.operands.iter_mut().map(|(_, operand)| operand);
-                        let operand = self.next_operand(earlier, |body| body.expr(value, want));
-                        given.operands.push((argument.kind, operand));
+                    let Some(value) = argument.value else {
+                        continue;
+                    };
+                    let position = position_of(&parameters, index, &argument.kind);
+                    if source.is_none() && self.is_open(value) {
+                        open.push((given.operands.len(), position, value));
+                        let later = Operand::error(argument.range);
+                        given.operands.push((argument.kind, later));
+                        continue;
                     }
+                    let earlier = given.operands.iter_mut().map(|(_, operand)| operand);
+                    let operand = self.next_operand(earlier, |body| body.expr(value, source));
+                    let generic = position.and_then(|position| parameters[position].generic());
+                    let ty = self.number_beside(&operand);
+                    typed.extend(generic.zip(ty));
+                    given.operands.push((argument.kind, operand));
                 }
             }
+        }
+        for (at, position, value) in open {
+            let ty = position.and_then(|position| {
+                self.argument_type(functions, &parameters, position, &typed, want)
+            });
+            given.operands[at].1 = self.expr(value, ty);
         }
         given
     }
@@ -316,6 +346,13 @@ impl Given {
         }
     }
 
+    /// Whether one of them has no type yet.
+    fn has_literals(&self) -> bool {
+        let untyped = [TypeId::UNTYPED_INT, TypeId::UNTYPED_REAL];
+        let mut operands = self.operands.iter();
+        operands.any(|(_, operand)| untyped.contains(&operand.ty))
+    }
+
     /// Whether a message has been given for one of them.
     pub(super) fn has_errors(&self) -> bool {
         self.operands.iter().any(|(_, operand)| operand.is_error())
@@ -328,6 +365,16 @@ pub(crate) struct Parameter {
     pub(super) name: Symbol,
     pub(super) output: bool,
     pub(super) ty: ParameterType,
+}
+
+impl Parameter {
+    /// The name of its generic type.
+    fn generic(&self) -> Option<Symbol> {
+        match self.ty {
+            ParameterType::Generic(name, _) => Some(name),
+            ParameterType::OpenText { .. } | ParameterType::Written(_) => None,
+        }
+    }
 }
 
 #[derive(Debug, Clone)]

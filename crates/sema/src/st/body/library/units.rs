@@ -110,6 +110,46 @@ impl Analysis<'_> {
         written.result.map(|ty| self.type_of_spec(scope, ty))
     }
 
+    /// The generic type that the result of a library function has.
+    pub(super) fn library_generic_result(&self, function: PouId) -> Option<Symbol> {
+        let unit = self.unit(self.pou(function).unit);
+        let UnitKind::Pou(pou) = &unit.kind else {
+            return None;
+        };
+        match self.parameter_type(&unit.arena, pou.result?) {
+            ParameterType::Generic(name, _) => Some(name),
+            ParameterType::OpenText { .. } | ParameterType::Written(_) => None,
+        }
+    }
+
+    /// The elementary type that the result of a library function has by name.
+    pub(super) fn library_elementary_result(&self, function: PouId) -> Option<TypeId> {
+        let unit = self.unit(self.pou(function).unit);
+        let UnitKind::Pou(pou) = &unit.kind else {
+            return None;
+        };
+        self.elementary_spec(&unit.arena, pou.result?)
+    }
+
+    /// The elementary type that a parameter of a library function has by name.
+    pub(super) fn library_elementary(&self, function: PouId, position: usize) -> Option<TypeId> {
+        let unit = self.unit(self.pou(function).unit);
+        match self.library_parameters(function).get(position)?.ty {
+            ParameterType::Written(spec) => self.elementary_spec(&unit.arena, spec),
+            ParameterType::Generic(..) | ParameterType::OpenText { .. } => None,
+        }
+    }
+
+    fn elementary_spec(&self, arena: &st::Arena, spec: st::Id<st::TypeSpec>) -> Option<TypeId> {
+        let WrittenType::Named(path) = arena[spec].kind else {
+            return None;
+        };
+        let Written::Name(name) = arena[path].kind else {
+            return None;
+        };
+        self.elementary_names.get(&name).copied()
+    }
+
     /// A type that a library function names.
     pub(crate) fn library_type(&mut self, function: PouId, spec: st::Id<st::TypeSpec>) -> TypeId {
         let pou = self.pou(function);

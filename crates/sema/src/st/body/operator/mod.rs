@@ -189,9 +189,7 @@ impl Body<'_, '_> {
         }
         let chained = compares(op) && self.is_comparison(left);
         self.in_place(|body| {
-            let mut left = body.expr(left, inner);
-            let earlier = Some(&mut left);
-            let right = body.next_operand(earlier, |body| body.expr(right, inner));
+            let (left, right) = body.operands(left, right, inner);
             if chained && body.is_chain(&right) {
                 return body.chain_of_comparisons(range);
             }

@@ -103,7 +103,12 @@ impl Body<'_, '_> {
             Op::Subtract
         };
         let storage = result.storage();
-        let (a, b) = (self.raw(left), self.raw(right));
+        let (a, mut b) = (self.raw(left), self.raw(right));
+        if wrap_day {
+            // Else the sum itself could wrap.
+            let day = self.add_const(86_400_000_000_000, storage, range);
+            b = self.add_expr(ExprKind::Binary(Op::Modulo, b, day), storage, range);
+        }
         let mut value = self.add_expr(ExprKind::Binary(hir_op, a, b), storage, range);
         if wrap_day {
             value = self.wrap_day(value, range);
@@ -111,12 +116,11 @@ impl Body<'_, '_> {
         Some(Operand::value(value, ty, range))
     }
 
-    /// A time of day brought back between midnight and midnight.
+    /// A time of day that is off by less than a day, brought back between midnight and midnight.
     fn wrap_day(&mut self, value: ExprId, range: TextRange) -> ExprId {
         let storage = El::Tod.storage();
         let day = self.add_const(86_400_000_000_000, storage, range);
-        let rest = self.add_expr(ExprKind::Binary(Op::Modulo, value, day), storage, range);
-        let sum = self.add_expr(ExprKind::Binary(Op::Add, rest, day), storage, range);
+        let sum = self.add_expr(ExprKind::Binary(Op::Add, value, day), storage, range);
         self.add_expr(ExprKind::Binary(Op::Modulo, sum, day), storage, range)
     }
 
