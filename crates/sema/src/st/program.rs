@@ -46,7 +46,8 @@ impl Analysis<'_> {
     fn limit_points(&mut self) {
         let points = self.hir.inputs.len().max(self.hir.outputs.len());
         if points > MAX_POINTS {
-            let message = format!("a program exchanges at most {MAX_POINTS} inputs and as many outputs");
+            let message =
+                format!("a program exchanges at most {MAX_POINTS} inputs and as many outputs");
             self.report(Diagnostic::without_place(Message::E2007, message));
         }
     }

@@ -96,23 +96,27 @@ impl Body<'_, '_> {
             return false;
         }
         let mut decides = false;
-        self.arena()[arguments].iter().enumerate().all(|(index, argument)| {
-            let Some(value) = argument.value else {
-                return false;
-            };
-            let position = position_of(&parameters, index, &argument.kind);
-            match position.map(|position| &parameters[position].ty) {
-                Some(ParameterType::Generic(generic, _)) if result != Some(*generic) => {
-                    self.does_nothing(value)
+        self.arena()[arguments]
+            .iter()
+            .enumerate()
+            .all(|(index, argument)| {
+                let Some(value) = argument.value else {
+                    return false;
+                };
+                let position = position_of(&parameters, index, &argument.kind);
+                match position.map(|position| &parameters[position].ty) {
+                    Some(ParameterType::Generic(generic, _)) if result != Some(*generic) => {
+                        self.does_nothing(value)
+                    }
+                    Some(ParameterType::Written(_)) if result.is_some() => self.does_nothing(value),
+                    Some(ParameterType::Generic(..) | ParameterType::Written(_)) => {
+                        decides = true;
+                        self.is_open(value)
+                    }
+                    Some(ParameterType::OpenText { .. }) | None => false,
                 }
-                Some(ParameterType::Written(_)) if result.is_some() => self.does_nothing(value),
-                Some(ParameterType::Generic(..) | ParameterType::Written(_)) => {
-                    decides = true;
-                    self.is_open(value)
-                }
-                Some(ParameterType::OpenText { .. }) | None => false,
-            }
-        }) && decides
+            })
+            && decides
     }
 
     /// The functions of the library that a name stands for here.
@@ -180,7 +184,8 @@ impl Body<'_, '_> {
                     let mut functions = functions.iter();
                     functions.any(|function| {
                         let taken = self.an.library_elementary(*function, position);
-                        taken == Some(*want) && taken == self.an.library_elementary_result(*function)
+                        taken == Some(*want)
+                            && taken == self.an.library_elementary_result(*function)
                     })
                 });
                 let real = self.an.types.elementary(own).is_some_and(El::is_real);

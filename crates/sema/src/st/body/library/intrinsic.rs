@@ -34,7 +34,9 @@ impl Body<'_, '_> {
                 return self.error(Message::E3021, range, message);
             }
             // One operand with a type says what the literals before it are.
-            let typed = operands.iter().find_map(|operand| self.number_beside(operand));
+            let typed = operands
+                .iter()
+                .find_map(|operand| self.number_beside(operand));
             let want = typed.or(want);
             let mut operands = operands.into_iter();
             let first = operands.next().expect("at least two");
