@@ -111,7 +111,7 @@ impl Analysis<'_> {
     }
 
     /// The generic type that the result of a library function has.
-    pub(super) fn library_generic_result(&self, function: PouId) -> Option<Symbol> {
+    pub(in crate::st::body) fn library_generic_result(&self, function: PouId) -> Option<Symbol> {
         let unit = self.unit(self.pou(function).unit);
         let UnitKind::Pou(pou) = &unit.kind else {
             return None;
@@ -123,7 +123,7 @@ impl Analysis<'_> {
     }
 
     /// The elementary type that the result of a library function has by name.
-    pub(super) fn library_elementary_result(&self, function: PouId) -> Option<TypeId> {
+    pub(in crate::st::body) fn library_elementary_result(&self, function: PouId) -> Option<TypeId> {
         let unit = self.unit(self.pou(function).unit);
         let UnitKind::Pou(pou) = &unit.kind else {
             return None;
@@ -132,7 +132,11 @@ impl Analysis<'_> {
     }
 
     /// The elementary type that a parameter of a library function has by name.
-    pub(super) fn library_elementary(&self, function: PouId, position: usize) -> Option<TypeId> {
+    pub(in crate::st::body) fn library_elementary(
+        &self,
+        function: PouId,
+        position: usize,
+    ) -> Option<TypeId> {
         let unit = self.unit(self.pou(function).unit);
         match self.library_parameters(function).get(position)?.ty {
             ParameterType::Written(spec) => self.elementary_spec(&unit.arena, spec),
