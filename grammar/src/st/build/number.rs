@@ -52,10 +52,11 @@ impl Build<'_, '_> {
         let note = "digits may have single underlines between them";
         match wrong {
             WrongDigits::Underline => {
-                let message = format!(
-                    "`{}` has an underline that is not between digits",
-                    self.text(start, end)
-                );
+                let text = self.text(start, end);
+                let message = match text.ends_with('#') {
+                    true => format!("`{text}` has no digits"),
+                    false => format!("`{text}` has an underline that is not between digits"),
+                };
                 self.bad_number(start, message, note, end);
             }
             WrongDigits::NoDigit(c) => {

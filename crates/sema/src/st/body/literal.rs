@@ -147,6 +147,11 @@ impl Body<'_, '_> {
                 self.mismatch(from, to);
                 None
             }
+            (TypeKind::Text { wide, .. }, Const::Int(unit))
+                if self.character_width(from) == Some(*wide) =>
+            {
+                Some(Const::Text(Rc::from([*unit as u16])))
+            }
             (TypeKind::Reference(..) | TypeKind::Interface(_), Const::Null) => Some(Const::Null),
             (
                 TypeKind::Reference(ReferenceKind::Pointer | ReferenceKind::RefTo, _)

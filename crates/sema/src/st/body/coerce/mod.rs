@@ -1,5 +1,6 @@
 //! From what an operand is to what its use needs.
 
+mod character;
 mod convert;
 
 use super::{Body, Operand, OperandKind, Place};
@@ -218,6 +219,9 @@ impl Body<'_, '_> {
             let path = self.path_of(target, range);
             self.before(StmtKind::Assign(path, value), range);
             return;
+        }
+        if let Some(text) = self.character_as_text(operand, ty) {
+            return self.store(target, ty, &text, range);
         }
         match &operand.kind {
             OperandKind::Const(_) => {

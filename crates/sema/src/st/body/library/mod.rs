@@ -17,6 +17,9 @@ use iecc_ast::st::{self, Argument, ArgumentKind, ExprKind as Written};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
 
+/// Most inputs of an extensible function.
+const MAX_INPUTS: usize = 1024;
+
 impl Body<'_, '_> {
     pub(super) fn library(
         &mut self,
@@ -25,16 +28,23 @@ impl Body<'_, '_> {
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
+        if given.operands.len() > MAX_INPUTS {
+            let name = self.text(self.an.pou(functions[0]).name);
+            let message = format!("`{name}` takes at most {MAX_INPUTS} inputs");
+            return self.error(Message::E3018, range, message);
+        }
         // Literals alone fit several overloads; the one that gives what is needed goes first.
         let wanted = want.filter(|_| given.has_literals());
         let suiting = functions
             .iter()
             .filter(|function| wanted.is_some_and(|want| self.suits(**function, &given, want)));
         let candidates: Vec<PouId> = suiting.chain(functions).copied().collect();
-        for function in candidates {
-            if let Some(bound) = self.bind(function, &given, want) {
-                return self.bound_call(function, bound, given, range, want);
-            }
+        if let Some((function, bound)) = self.first_bound(&candidates, &given, want) {
+            return self.bound_call(function, bound, given, range, want);
+        }
+        let given = self.characters_as_texts(functions[0], given);
+        if let Some((function, bound)) = self.first_bound(&candidates, &given, want) {
+            return self.bound_call(function, bound, given, range, want);
         }
         if self.unknown_parameter(functions, &given) {
             return Operand::error(range);
@@ -50,6 +60,29 @@ impl Body<'_, '_> {
             .collect();
         let message = format!("{name} does not take ({})", types.join(", "));
         self.error(Message::E3021, range, message)
+    }
+
+    /// The first function that takes the arguments.
+    fn first_bound(
+        &mut self,
+        functions: &[PouId],
+        given: &Given,
+        want: Option<TypeId>,
+    ) -> Option<(PouId, Bound)> {
+        let mut functions = functions.iter();
+        functions.find_map(|function| Some((*function, self.bind(*function, given, want)?)))
+    }
+
+    /// Characters become strings where nothing takes them as they are; but conversions are of what is
+    /// written.
+    fn characters_as_texts(&mut self, function: PouId, mut given: Given) -> Given {
+        let converts = self.text(self.an.pou(function).name).starts_with("TO_");
+        for (_, operand) in &mut given.operands {
+            if !converts && self.character_width(operand).is_some() {
+                *operand = self.character_text(operand);
+            }
+        }
+        given
     }
 
     /// Reports a name that no parameter of any of the functions has.

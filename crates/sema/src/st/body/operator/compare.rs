@@ -21,6 +21,8 @@ impl Body<'_, '_> {
         right: Operand,
         range: TextRange,
     ) -> Operand {
+        let left = self.beside_text(left, &right);
+        let right = self.beside_text(right, &left);
         let Some(ty) = self.compared_type(op, &left, &right, range) else {
             return Operand::error(range);
         };
@@ -42,6 +44,19 @@ impl Body<'_, '_> {
             range,
         );
         Operand::value(value, TypeId::BOOL, range)
+    }
+
+    /// A character beside a string becomes one, but beside a literal of one character, which is one.
+    fn beside_text(&mut self, operand: Operand, other: &Operand) -> Operand {
+        let single = matches!(
+            self.an.types.base(other.ty),
+            TypeKind::Text { length: 1, .. }
+        );
+        if single && other.as_const().is_some() {
+            return operand;
+        }
+        let text = self.character_as_text(&operand, other.ty);
+        text.unwrap_or(operand)
     }
 
     /// The type in which two operands are compared; a message if there is none.
