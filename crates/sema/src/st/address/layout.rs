@@ -41,7 +41,7 @@ struct Use {
 #[derive(Debug)]
 pub(super) struct Cluster {
     pub(super) first: u64,
-    end: u64,
+    pub(super) end: u64,
     pub(super) tag: TagId,
     /// What it is as one tag; `None` for bytes.
     pub(super) plain: Option<Class>,

@@ -3,7 +3,7 @@
 use super::Address;
 use super::layout::Class;
 use crate::hir::code::{Init, PathStep};
-use crate::hir::{self, Step, Type};
+use crate::hir::{self, Elementary, Step, Type};
 use crate::st::analysis::Analysis;
 use crate::st::signature::{Spot, Storage, UnitId};
 use crate::st::storage::steps_in_bytes;
@@ -36,11 +36,28 @@ impl Analysis<'_> {
             return Some(Spot { tag, steps });
         }
         let first = (address.first - cluster.first) as u32;
-        let Type::Elementary(of) = storage else {
+        let bytes = ((cluster.end - cluster.first) / 8) as u32;
+        if !self.lies_in_bytes(storage, first) {
             return None;
-        };
-        let steps = steps_in_bytes(first, of);
+        }
+        let steps = self.shared_steps(first, bytes, ty);
         Some(Spot { tag, steps })
+    }
+
+    /// Whether a type is numbers whose bytes others may share.
+    fn lies_in_bytes(&self, ty: Type, first: u32) -> bool {
+        let Type::Array(id) = ty else {
+            return matches!(ty, Type::Elementary(_));
+        };
+        let (mut element, mut nested) = (self.hir.types.array_def(id).element, false);
+        while let Type::Array(inner) = element {
+            (element, nested) = (self.hir.types.array_def(inner).element, true);
+        }
+        match element {
+            Type::Elementary(Elementary::Bool) => !nested && first.is_multiple_of(8),
+            Type::Elementary(_) => true,
+            Type::Array(_) | Type::Struct(_) => false,
+        }
     }
 
     /// Says what the value of a type at an address starts with.
@@ -55,20 +72,57 @@ impl Analysis<'_> {
         let Some(spot) = self.spot(address, ty) else {
             return;
         };
-        let whole = spot.steps.is_empty();
-        let value = self.hir.inits.get(init).clone();
-        let tag = &mut self.hir.tags[spot.tag.index()];
-        match value {
-            _ if whole => {
-                tag.init = Some(init);
-                tag.initial.clear();
+        let (tag, storage) = (spot.tag.index(), self.storage(ty));
+        if spot.steps.is_empty() {
+            self.hir.tags[tag].init = Some(init);
+            return;
+        }
+        let mut made = Vec::new();
+        let plain = match (storage, spot.steps.last()) {
+            (Type::Array(_), Some(PathStep::Bytes { offset, .. })) => {
+                self.leaves_in_bytes(storage, u64::from(*offset) * 8, Some(init), &mut made)
             }
-            Init::Zero => tag.initial.extend(leaves(&spot.steps, 0)),
-            Init::Bits(bits) => tag.initial.extend(leaves(&spot.steps, bits)),
-            Init::Address(_) | Init::Struct(_) | Init::Array(_) => {
-                let message = "a reference at an address that others overlap starts as NULL";
-                self.error(Code::E2008, span, message);
+            _ => match self.hir.inits.get(init) {
+                Init::Zero => leaves(&spot.steps, 0, &mut made),
+                Init::Bits(bits) => leaves(&spot.steps, *bits, &mut made),
+                Init::Address(_) | Init::Struct(_) | Init::Array(_) => false,
+            },
+        };
+        if !plain {
+            let message = "a reference at an address that others overlap starts as NULL";
+            self.error(Code::E2008, span, message);
+        }
+        self.hir.tags[tag].initial.extend(made);
+    }
+
+    /// The leaves of numbers from a bit of an array of bytes; whether there are only numbers.
+    fn leaves_in_bytes(
+        &self,
+        ty: Type,
+        first: u64,
+        init: Option<hir::InitId>,
+        made: &mut Vec<(Vec<Step>, u64)>,
+    ) -> bool {
+        let init = init.map(|init| self.hir.inits.get(init));
+        match (ty, init) {
+            (Type::Elementary(of), None | Some(Init::Zero)) => {
+                leaves(&steps_in_bytes(first as u32, of), 0, made)
             }
+            (Type::Elementary(of), Some(Init::Bits(bits))) => {
+                leaves(&steps_in_bytes(first as u32, of), *bits, made)
+            }
+            (Type::Array(id), Some(Init::Array(runs))) => {
+                let element = self.hir.types.array_def(id).element;
+                let width = self.width(element);
+                runs.iter().all(|&(from, count, value)| {
+                    (from..from + count).all(|index| {
+                        let first = first + u64::from(index) * width;
+                        self.leaves_in_bytes(element, first, Some(value), made)
+                    })
+                })
+            }
+            (Type::Array(_), None | Some(Init::Zero)) => true,
+            (_, Some(_)) | (Type::Struct(_), None) => false,
         }
     }
 
@@ -123,8 +177,8 @@ impl Analysis<'_> {
     }
 }
 
-/// The leaves that hold a number, which may be some bits of one or several bytes.
-fn leaves(steps: &[PathStep], value: u64) -> Vec<(Vec<Step>, u64)> {
+/// Adds the leaves that hold a number, which may be some bits of one or several bytes.
+fn leaves(steps: &[PathStep], value: u64, made: &mut Vec<(Vec<Step>, u64)>) -> bool {
     let mut path: Vec<Step> = Vec::new();
     for step in steps {
         match *step {
@@ -132,22 +186,20 @@ fn leaves(steps: &[PathStep], value: u64) -> Vec<(Vec<Step>, u64)> {
             PathStep::Index(index) => path.push(Step::Index(index)),
             PathStep::Bits { first, count } => {
                 let bits = (0..count).map(|bit| (Step::Bit(first + bit), (value >> bit) & 1));
-                return split(&path, bits);
+                made.extend(bits.map(|(step, value)| ([&path[..], &[step]].concat(), value)));
+                return true;
             }
             PathStep::Bytes { offset, ty } => {
                 let bytes = (0..ty.bits() / 8)
                     .map(|byte| (Step::Index(offset + byte), (value >> (8 * byte)) & 0xFF));
-                return split(&path, bytes);
+                made.extend(bytes.map(|(step, value)| ([&path[..], &[step]].concat(), value)));
+                return true;
             }
             PathStep::IndexBy { .. } | PathStep::Character { .. } => {
                 panic!("addresses are constant")
             }
         }
     }
-    vec![(path, value)]
-}
-
-fn split(path: &[Step], parts: impl Iterator<Item = (Step, u64)>) -> Vec<(Vec<Step>, u64)> {
-    let parts = parts.map(|(step, value)| ([path, &[step]].concat(), value));
-    parts.collect()
+    made.push((path, value));
+    true
 }

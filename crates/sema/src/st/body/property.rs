@@ -124,7 +124,8 @@ impl Body<'_, '_> {
                 let read = self.read_property(property, written.range);
                 Target::Place(read)
             }
-            Some(found) => found,
+            Some(Target::Place(place)) => Target::Place(self.as_one(place)),
+            Some(Target::Property(property)) => Target::Property(property),
             None => Target::Place(self.place(target, None)),
         }
     }

@@ -8,7 +8,8 @@ use crate::hir::{Elementary, Type};
 use crate::st::address::unit_bits;
 use crate::st::analysis::Analysis;
 use crate::st::resolve::TypeScope;
-use crate::st::types::{Member, Overlay, TypeId};
+use crate::st::storage::extent;
+use crate::st::types::{Member, Overlay, Parts, TypeId};
 use iecc_ast::st::{self, Direct, ExprKind};
 use iecc_diag::{Code, Diagnostic};
 
@@ -118,20 +119,19 @@ impl Analysis<'_> {
     ) -> Result<Vec<Option<(u64, u64)>>, ()> {
         let mut ranges = Vec::new();
         for (member, place) in members.iter().zip(places) {
-            let bits = self
-                .types
-                .elementary(member.ty)
-                .map(|el| u64::from(el.bits()));
+            let bits = self.overlaid_bits(member.ty);
             let name = self.text(member.name);
             let range = match (place, bits, shape) {
                 (_, _, _) if member.ty == TypeId::ERROR => return Err(()),
-                (Some((first, unit)), Some(bits), _) if *unit == bits => Some((*first, bits)),
-                (Some((_, unit)), Some(bits), _) => {
-                    let message = format!("`{name}` has {bits} bits, not {unit}");
+                (Some((first, unit)), Some((width, bits)), _) if *unit == width => {
+                    Some((*first, bits))
+                }
+                (Some((_, unit)), Some((width, _)), _) => {
+                    let message = format!("`{name}` has {width} bits, not {unit}");
                     self.error(Code::E2022, member.span, message);
                     return Err(());
                 }
-                (None, Some(bits), Shape::Union) => Some((0, bits)),
+                (None, Some((_, bits)), Shape::Union) => Some((0, bits)),
                 (None, _, Shape::Plain) => None,
                 (None, Some(_), Shape::Overlap) => {
                     let message = format!("`{name}` does not say where it lies");
@@ -140,7 +140,9 @@ impl Analysis<'_> {
                     return Err(());
                 }
                 (_, None, _) => {
-                    let message = format!("`{name}` is no number: it is not compiled here yet");
+                    let message = format!(
+                        "`{name}` is neither a number nor an array of numbers: it is not compiled here yet"
+                    );
                     self.error(Code::E2010, member.span, message);
                     return Err(());
                 }
@@ -171,12 +173,41 @@ impl Analysis<'_> {
         Ok(())
     }
 
-    /// The way to a number in the bytes of an overlay.
-    pub(crate) fn overlay_steps(&mut self, first: u32, ty: TypeId) -> Vec<PathStep> {
-        let Type::Elementary(of) = self.storage(ty) else {
-            panic!("only numbers overlap");
+    /// How many bits a member that may overlap has, behind those of one number in it; `None` for what
+    /// is neither a number nor an array of numbers in whole bytes.
+    fn overlaid_bits(&self, ty: TypeId) -> Option<(u64, u64)> {
+        if let Some(el) = self.types.elementary(ty) {
+            return Some((u64::from(el.bits()), u64::from(el.bits())));
+        }
+        let Parts::Elements {
+            dimensions,
+            element,
+        } = self.types.parts(ty)
+        else {
+            return None;
         };
-        steps_in_bytes(first, of)
+        let width = u64::from(self.types.elementary(element)?.bits());
+        let elements = dimensions.iter().map(|d| u64::from(extent(*d)));
+        let bits = elements.fold(width, u64::saturating_mul);
+        (width >= 8).then_some((width, bits))
+    }
+
+    /// The way to a number, or to an array of numbers, from a bit of an array of bytes. An array that is not
+    /// all of the bytes has no elements of its own there; it is where they begin.
+    pub(crate) fn shared_steps(&mut self, first: u32, bytes: u32, ty: TypeId) -> Vec<PathStep> {
+        match self.storage(ty) {
+            Type::Elementary(of) => steps_in_bytes(first, of),
+            all @ (Type::Array(_) | Type::Struct(_)) => {
+                let byte = Type::Elementary(Elementary::Usint);
+                if all == Type::Array(self.hir.types.array(byte, bytes)) {
+                    return Vec::new();
+                }
+                vec![PathStep::Bytes {
+                    offset: first / 8,
+                    ty: Elementary::Usint,
+                }]
+            }
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::st::body::place::enter_bits;
 use crate::st::body::{Body, Operand, OperandKind};
 use crate::st::constant::Const;
 use crate::st::elementary::El;
-use crate::st::types::{TypeId, TypeKind};
+use crate::st::types::{Parts, TypeId, TypeKind};
 use iecc_ast::st::{self, AddressSize, Part};
 use iecc_diag::Code as Message;
 use iecc_source::TextRange;
@@ -18,7 +18,7 @@ impl Body<'_, '_> {
         indices: st::List<st::Id<st::Expr>>,
         range: TextRange,
     ) -> Operand {
-        let mut at = self.place(base, None);
+        let mut at = self.place_or_shared(base, None);
         if let TypeKind::Array {
             dimensions,
             element,
@@ -48,6 +48,7 @@ impl Body<'_, '_> {
             let message = format!("{} has no elements", self.type_name(base.ty));
             return self.error(Message::E2031, base.range, message);
         };
+        let shared = is_shared(&base.kind);
         let mut place = place.clone();
         let found = match self.an.types.base(base.ty).clone() {
             TypeKind::Array {
@@ -80,7 +81,13 @@ impl Body<'_, '_> {
         let Some((step, ty)) = found else {
             return Operand::error(range);
         };
-        place.steps.push(step);
+        if !shared {
+            place.steps.push(step);
+        } else if !self.enter_shared(&mut place.steps, step, ty) {
+            let range = self.arena()[index].range;
+            let message = "a computed subscript of an array that shares its bytes with others is not compiled yet";
+            return self.error(Message::E2010, range, message);
+        }
         self.place_operand(place.root, place.steps, place.rights, ty, range)
     }
 
@@ -135,6 +142,29 @@ impl Body<'_, '_> {
         }
         let el = self.an.types.elementary(ty)?;
         self.counts(el).then(|| el.range())
+    }
+
+    /// Goes on to an element of an array that shares its bytes, unless the subscript is computed.
+    fn enter_shared(&mut self, steps: &mut Vec<PathStep>, step: PathStep, ty: TypeId) -> bool {
+        let (PathStep::Index(index), Some(PathStep::Bytes { offset, .. })) = (step, steps.pop())
+        else {
+            return false;
+        };
+        let storage = self.an.storage(ty);
+        let first = u64::from(offset) * 8 + u64::from(index) * self.an.width(storage);
+        // It is no array that is all of the bytes.
+        steps.extend(self.an.shared_steps(first as u32, 0, ty));
+        true
+    }
+
+    /// What can be used as a whole: not an array that shares its bytes.
+    pub(crate) fn as_one(&mut self, operand: Operand) -> Operand {
+        let array = matches!(self.an.types.parts(operand.ty), Parts::Elements { .. });
+        if !array || !is_shared(&operand.kind) {
+            return operand;
+        }
+        let message = "an array that shares its bytes with others is not compiled as a whole yet, only its elements";
+        self.error(Message::E2010, operand.range, message)
     }
 
     /// The step to an element.
@@ -231,4 +261,10 @@ impl Body<'_, '_> {
             OperandKind::Const(_) | OperandKind::Error => Operand::error(range),
         }
     }
+}
+
+/// Whether an array is bytes that others share, see `shared_steps`.
+fn is_shared(kind: &OperandKind) -> bool {
+    matches!(kind, OperandKind::Place(place)
+        if matches!(place.steps.last(), Some(PathStep::Bytes { .. })))
 }

@@ -47,9 +47,11 @@ impl Body<'_, '_> {
                     return self.no_member(base.ty, member, candidates);
                 };
                 let ty = def.members[position as usize].ty;
-                let first = def.overlay.as_ref().map(|o| o.first[position as usize]);
-                match first {
-                    Some(first) => steps.extend(self.an.overlay_steps(first, ty)),
+                let overlay = def.overlay.as_ref();
+                match overlay.map(|o| (o.first[position as usize], o.bytes)) {
+                    Some((first, bytes)) => {
+                        steps.extend(self.an.shared_steps(first, bytes, ty));
+                    }
                     None => steps.push(PathStep::Field(position)),
                 }
                 self.place_operand(root, steps, rights, ty, range)

@@ -22,6 +22,12 @@ use iecc_source::TextRange;
 impl Body<'_, '_> {
     /// A path to something, or an enumerator.
     pub(crate) fn place(&mut self, id: st::Id<st::Expr>, want: Option<TypeId>) -> Operand {
+        let found = self.place_or_shared(id, want);
+        self.as_one(found)
+    }
+
+    /// As `place`; it may also be an array that shares its bytes, of which only elements can be used.
+    fn place_or_shared(&mut self, id: st::Id<st::Expr>, want: Option<TypeId>) -> Operand {
         let written = self.arena()[id];
         let range = written.range;
         match written.kind {
