@@ -2,7 +2,7 @@
 //! with whatever they find.
 
 use crate::differential::interpreter;
-use crate::rng::Rng;
+use crate::rng::{Rng, seeds};
 use crate::stimulus::random_stimulus;
 use iecc_ast::Names;
 use iecc_ast::rung::Rung;
@@ -14,6 +14,31 @@ use iecc_ir::{Layout, MemType, Module, Region};
 use iecc_passes::{HARDWARE, SOFTWARE, Settings, run_pipeline};
 use iecc_source::{FileId, MappedText};
 use iecc_target::{Engine, region_bytes};
+use std::fmt::Display;
+use std::time::{Duration, Instant};
+
+/// Far above what an input of these tests needs on any machine, far below what a hang needs.
+const LONGEST: Duration = Duration::from_secs(10);
+
+/// What some work on one input gives.
+///
+/// # Panics
+/// If it takes too long; then `input` says which it was.
+#[expect(clippy::disallowed_methods, reason = "the bound on time needs a clock")]
+pub fn in_time<T>(input: impl Display, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let found = work();
+    let elapsed = start.elapsed();
+    assert!(elapsed < LONGEST, "{input} took {elapsed:?}");
+    found
+}
+
+/// Runs a test with so many seeds, each in bounded time.
+pub fn for_all_seeds(count: u64, test: impl Fn(&mut Rng)) {
+    for seed in seeds(count) {
+        in_time(format_args!("seed {seed}"), || test(&mut Rng::new(seed)));
+    }
+}
 
 /// Regions larger than this are parsed but not run: bytes.
 const MAX_REGION: usize = 1 << 16;

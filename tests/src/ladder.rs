@@ -13,6 +13,7 @@
 //!
 //! Values are whole numbers, or floats with a point. Only what the line names is compared.
 
+use crate::runs::machine_code;
 use iecc_diag::{Code, Diagnostics, Severity, render_text};
 use iecc_driver::{FrontOptions, Sources, compile};
 use iecc_interp::Interpreter;
@@ -21,7 +22,6 @@ use iecc_ir::{
     verify,
 };
 use iecc_jit::Jit;
-use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_source::SourceMap;
 use iecc_target::{Engine, region_bytes};
 use std::fmt::Write;
@@ -485,14 +485,6 @@ impl Bench {
         self.engine.set_state(&state);
         self.machine_code.set_state(&state);
     }
-}
-
-/// Machine code as `iecc run` makes it.
-fn machine_code(mut module: Module) -> Jit {
-    let settings = Settings::default();
-    run_pipeline(&mut module, SOFTWARE, &settings, &mut |_, _| ()).expect("the passes exist");
-    let verified = verify(&module).expect("passes keep the rules");
-    Jit::new(verified).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
 fn read(bytes: &[u8], offset: u64, ty: Type) -> u64 {

@@ -1,5 +1,16 @@
 //! A small random source whose sequence never changes, so that a seed replays a test exactly.
 
+/// The seeds a test runs: `count` from 0, or as many as the environment variable `IECC_SEEDS` says,
+/// for a longer search.
+///
+/// # Panics
+/// If the variable is no number.
+#[expect(clippy::disallowed_methods, reason = "tests read the environment")]
+pub fn seeds(count: u64) -> std::ops::Range<u64> {
+    let wanted = std::env::var("IECC_SEEDS").map(|text| text.parse());
+    0..wanted.map_or(count, |count| count.expect("IECC_SEEDS is a number"))
+}
+
 /// SplitMix64 (Steele, Lea and Flood 2014): one 64-bit state, every seed is good.
 #[derive(Debug, Clone)]
 pub struct Rng(u64);

@@ -5,6 +5,7 @@ use iecc_driver::run::{CsvTrace, Request, Schedule, Session, Stimulus, Trace};
 use iecc_driver::{EngineKind, FrontOptions, Sources, compile};
 use iecc_ir::{Module, verify};
 use iecc_jit::Jit;
+use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_source::SourceMap;
 use iecc_target::Engine;
 use std::io;
@@ -128,6 +129,17 @@ pub fn engines(module: &Module, period_ns: u64) -> Vec<(&'static str, Box<dyn En
         ("machine code without passes", Box::new(unchanged)),
         ("simulated Verilog", start(EngineKind::Verilog)),
     ]
+}
+
+/// Machine code of a module after the passes for software.
+///
+/// # Panics
+/// If the passes break a rule, or the engine refuses the module.
+pub fn machine_code(mut module: Module) -> Jit {
+    let settings = Settings::default();
+    run_pipeline(&mut module, SOFTWARE, &settings, &mut |_, _| ()).expect("the passes exist");
+    let verified = verify(&module).expect("passes keep the rules");
+    Jit::new(verified).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
 /// Runs a session to its end.

@@ -4,8 +4,8 @@ use iecc_ir::{Module, print_module, verify};
 use iecc_jit::Jit;
 use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_tests::differential::{Agreement, compare_engines, interpreter};
-use iecc_tests::random_ir::{Options, random_module, seeds};
-use iecc_tests::rng::Rng;
+use iecc_tests::random_ir::{Options, random_module};
+use iecc_tests::rng::{Rng, seeds};
 use iecc_tests::stimulus::random_stimulus;
 
 const SEEDS: u64 = 300;

@@ -4,8 +4,8 @@ use iecc_interp::run_prescan;
 use iecc_ir::{FaultCode, InstData, Module, Terminator, parse_module, print_module, verify};
 use iecc_target::Engine;
 use iecc_tests::differential::{Agreement, compare_engines, compare_modules, interpreter};
-use iecc_tests::random_ir::{Options, random_module, seeds};
-use iecc_tests::rng::Rng;
+use iecc_tests::random_ir::{Options, random_module};
+use iecc_tests::rng::{Rng, seeds};
 use iecc_tests::stimulus::random_stimulus;
 use std::collections::{BTreeMap, BTreeSet};
 

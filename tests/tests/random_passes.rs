@@ -3,8 +3,8 @@
 use iecc_ir::{Module, print_module, verify};
 use iecc_passes::{HARDWARE, SOFTWARE, Settings, run_pipeline};
 use iecc_tests::differential::{Agreement, compare_modules};
-use iecc_tests::random_ir::{random_expressions, random_graph, seeds};
-use iecc_tests::rng::Rng;
+use iecc_tests::random_ir::{random_expressions, random_graph};
+use iecc_tests::rng::{Rng, seeds};
 use iecc_tests::stimulus::random_stimulus;
 
 const SCANS: usize = 30;

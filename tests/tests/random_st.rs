@@ -2,8 +2,8 @@
 //! interpreter and machine code agree in every output, fault and state byte of every scan.
 
 use iecc_driver::{ParsedLibrary, parallel_map};
-use iecc_tests::random_ir::seeds;
 use iecc_tests::random_st::{Options, check_seed};
+use iecc_tests::rng::seeds;
 
 const SEEDS: u64 = 2_000;
 

@@ -5,9 +5,8 @@ use iecc_diag::Diagnostics;
 use iecc_driver::{EngineKind, FrontOptions, OnFault, ParsedLibrary, parallel_map};
 use iecc_ir::{Module, Region};
 use iecc_target::region_bytes;
-use iecc_tests::random_ir::seeds;
 use iecc_tests::random_st::{Options, random_program};
-use iecc_tests::rng::Rng;
+use iecc_tests::rng::{Rng, seeds};
 use iecc_tests::stimulus::random_stimulus;
 
 const SEEDS: u64 = 1_000;

@@ -7,8 +7,7 @@ use iecc_ide::{Dialect, Workspace};
 use iecc_source::FileId;
 use iecc_tests::cases::suite;
 use iecc_tests::mutate::mutate;
-use iecc_tests::random_ir::seeds;
-use iecc_tests::rng::Rng;
+use iecc_tests::rng::{Rng, seeds};
 
 /// Each makes some twenty changes.
 const SEEDS: u64 = 25;

@@ -3,8 +3,8 @@
 use iecc_ir::print_module;
 use iecc_tests::check;
 use iecc_tests::mutate::mutate;
-use iecc_tests::random_ir::{Options, random_module, seeds};
-use iecc_tests::rng::Rng;
+use iecc_tests::random_ir::{Options, random_module};
+use iecc_tests::rng::{Rng, seeds};
 
 const SEEDS: u64 = 1000;
 

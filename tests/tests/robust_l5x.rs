@@ -1,42 +1,25 @@
 //! Damaged exports and damaged or generated rungs: no panic, messages when there is no result,
 //! and an answer in bounded time. The checks are those of the fuzz targets.
-#![expect(clippy::disallowed_methods, reason = "the bound on time needs a clock")]
 
+use iecc_tests::check::for_all_seeds;
 use iecc_tests::mutate::{SAMPLE, mutate, mutate_values};
-use iecc_tests::rng::Rng;
 use iecc_tests::{check, rung_text};
-use std::time::{Duration, Instant};
 
 const SEEDS: u64 = 200;
 
-/// Far above what the inputs here need on any machine, far below what a hang needs.
-const LONGEST: Duration = Duration::from_secs(5);
-
-fn for_all_seeds(test: impl Fn(&mut Rng)) {
-    for seed in 0..SEEDS {
-        let start = Instant::now();
-        test(&mut Rng::new(seed));
-        assert!(
-            start.elapsed() < LONGEST,
-            "seed {seed} took {:?}",
-            start.elapsed()
-        );
-    }
-}
-
 #[test]
 fn damaged_exports_give_messages_not_panics() {
-    for_all_seeds(|rng| check::l5x(&mutate(SAMPLE, rng)));
+    for_all_seeds(SEEDS, |rng| check::l5x(&mutate(SAMPLE, rng)));
 }
 
 #[test]
 fn damaged_values_give_messages_not_panics() {
-    for_all_seeds(|rng| check::l5x(&mutate_values(SAMPLE, rng)));
+    for_all_seeds(SEEDS, |rng| check::l5x(&mutate_values(SAMPLE, rng)));
 }
 
 #[test]
 fn generated_rungs_parse_and_print_to_themselves() {
-    for_all_seeds(|rng| {
+    for_all_seeds(SEEDS, |rng| {
         let text = rung_text::rung(rng);
         assert!(check::rung(&text), "{text}");
     });
@@ -45,7 +28,7 @@ fn generated_rungs_parse_and_print_to_themselves() {
 #[test]
 fn damaged_rungs_give_one_message_each() {
     let accepted = std::cell::Cell::new(0);
-    for_all_seeds(|rng| {
+    for_all_seeds(SEEDS, |rng| {
         let text = mutate(&rung_text::rung(rng), rng);
         accepted.set(accepted.get() + u64::from(check::rung(&text)));
     });

@@ -1,22 +1,16 @@
 //! Damaged cases of the conformance suite through the whole compiler: no panic, an error where there
 //! is no module, and an answer in bounded time. Every module that comes out keeps the rules of the IR.
 //! The check is that of the fuzz target `st_program`.
-#![expect(clippy::disallowed_methods, reason = "the bound on time needs a clock")]
 
 use iecc_conformance::Case;
 use iecc_driver::{FrontOptions, ParsedLibrary, parallel_map};
 use iecc_tests::cases::suite;
-use iecc_tests::check::st_program;
+use iecc_tests::check::{in_time, st_program};
 use iecc_tests::damage::damage;
 use iecc_tests::mutate::mutate;
-use iecc_tests::random_ir::seeds;
-use iecc_tests::rng::Rng;
-use std::time::{Duration, Instant};
+use iecc_tests::rng::{Rng, seeds};
 
 const SEEDS: u64 = 500;
-
-/// Far above what the inputs here need on any machine, far below what a hang needs.
-const LONGEST: Duration = Duration::from_secs(10);
 
 /// Compiles a text made of two cases for every seed; says how many are accepted.
 fn for_all_seeds(make: impl Fn(&Case, &Case, &mut Rng) -> String + Sync) -> usize {
@@ -30,11 +24,8 @@ fn for_all_seeds(make: impl Fn(&Case, &Case, &mut Rng) -> String + Sync) -> usiz
             dialect: one.dialect,
             ..FrontOptions::default()
         };
-        let start = Instant::now();
-        let accepted = st_program(&library, &text, &options);
-        let elapsed = start.elapsed();
-        assert!(elapsed < LONGEST, "seed {seed} took {elapsed:?}:\n{text}");
-        accepted
+        let input = format_args!("seed {seed}:\n{text}\n");
+        in_time(input, || st_program(&library, &text, &options))
     });
     accepted.into_iter().filter(|accepted| *accepted).count()
 }

@@ -6,14 +6,14 @@
     reason = "tests read files outside the project"
 )]
 
-use iecc_diag::{Diagnostics, render_text};
+use iecc_diag::Diagnostics;
 use iecc_driver::{FrontOptions, Sources, compile};
 use iecc_interp::Interpreter;
 use iecc_ir::{FaultCode, Layout, MemType, Module, Place, Region, Root, Scalar, verify};
 use iecc_jit::Jit;
-use iecc_passes::{SOFTWARE, Settings, run_pipeline};
 use iecc_source::SourceMap;
 use iecc_target::{Engine, region_bytes};
+use iecc_tests::runs::{machine_code, messages};
 use iecc_tests::shared::shared_dir;
 
 fn module(text: &str) -> Module {
@@ -22,11 +22,7 @@ fn module(text: &str) -> Module {
     let sources = Sources::text(&mut map, vec![file]);
     let mut diagnostics = Diagnostics::new();
     let module = compile(&map, &sources, &FrontOptions::default(), &mut diagnostics);
-    module.unwrap_or_else(|| {
-        let said = diagnostics.iter();
-        let said: Vec<String> = said.map(|said| render_text(&map, said, false)).collect();
-        panic!("{}", said.join("\n"))
-    })
+    module.unwrap_or_else(|| panic!("{}", messages(&map, &diagnostics)))
 }
 
 /// Both engines side by side.
@@ -65,12 +61,6 @@ impl Run {
     fn number(&self, name: &str) -> i64 {
         number(&self.module, self.interpreter.state(), name)
     }
-}
-
-fn machine_code(mut module: Module) -> Jit {
-    let settings = Settings::default();
-    run_pipeline(&mut module, SOFTWARE, &settings, &mut |_, _| ()).expect("the passes exist");
-    Jit::new(verify(&module).expect("sound")).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
 /// The number behind a name that the module knows, or the one member of the state with that name.

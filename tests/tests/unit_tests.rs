@@ -9,8 +9,7 @@ use iecc_driver::{FrontOptions, OnFault, Sources, Tests, check, parallel_map};
 use iecc_grammar::st::{Dialect, lex};
 use iecc_source::SourceMap;
 use iecc_tests::mutate::{mutate, mutate_values};
-use iecc_tests::random_ir::seeds;
-use iecc_tests::rng::Rng;
+use iecc_tests::rng::{Rng, seeds};
 use std::path::Path;
 
 /// What begins an expectation, in a comment at the end of a line.

@@ -86,17 +86,6 @@ impl Options {
     }
 }
 
-/// The seeds a test runs: `count` from 0, or as many as the environment variable `IECC_SEEDS` says,
-/// for a longer search.
-///
-/// # Panics
-/// If the variable is no number.
-#[expect(clippy::disallowed_methods, reason = "tests read the environment")]
-pub fn seeds(count: u64) -> std::ops::Range<u64> {
-    let wanted = std::env::var("IECC_SEEDS").map(|text| text.parse());
-    0..wanted.map_or(count, |count| count.expect("IECC_SEEDS is a number"))
-}
-
 /// The most instructions a function may take with all it calls.
 const MAX_COST: u64 = 20_000;
 

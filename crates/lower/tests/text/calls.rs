@@ -1,14 +1,11 @@
 //! Calls: values in, references, results out.
 
-use crate::hand::{Run, Text, array, continuing, every_scan, one, program, structure, unit, value};
+use crate::hand::{
+    Run, Text, array, continuing, every_scan, one, program, structure, trap, unit, value,
+};
 use iecc_ir::FaultCode;
-use iecc_lower::Options;
 use iecc_sema::hir::code::{ExprKind, PathStep, Root, StmtKind};
 use iecc_sema::hir::{Elementary as E, PouId, Program, StructKind};
-
-fn trap() -> Options {
-    Options::default()
-}
 
 /// FUNCTION twice : INT (x : INT) with a second result `odd`.
 fn twice(hir: &mut Program) -> PouId {

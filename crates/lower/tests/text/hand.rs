@@ -291,6 +291,12 @@ pub(crate) struct Run {
     pub(crate) outputs: Vec<u8>,
 }
 
+/// Errors at run time end the scan.
+pub(crate) fn trap() -> Options {
+    Options::default()
+}
+
+/// Errors at run time have a result.
 pub(crate) fn continuing() -> Options {
     Options {
         on_fault: OnFault::Continue,

@@ -1,14 +1,10 @@
 //! FOR, WHILE and REPEAT: passes, the variable behind them, and their limits.
 
-use crate::hand::{Run, Text, continuing, every_scan, one, program, unit, value};
+use crate::hand::{Run, Text, continuing, every_scan, one, program, trap, unit, value};
 use iecc_ir::FaultCode;
 use iecc_lower::{OnFault, Options};
 use iecc_sema::hir::code::{Root, StmtKind};
 use iecc_sema::hir::{CompareOp, Elementary as E};
-
-fn trap() -> Options {
-    Options::default()
-}
 
 fn status(run: &Run, options: &Options) -> u64 {
     match options.on_fault {

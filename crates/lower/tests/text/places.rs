@@ -1,17 +1,13 @@
 //! Every way into a place, read and written, inside and outside of its bounds.
 
 use crate::hand::{
-    Run, Text, array, continuing, every_scan, init, one, program, string, structure, tag, unit,
-    value,
+    Run, Text, array, continuing, every_scan, init, one, program, string, structure, tag, trap,
+    unit, value,
 };
 use iecc_ir::FaultCode;
 use iecc_lower::Options;
 use iecc_sema::hir::code::{Init, PathStep, Root};
 use iecc_sema::hir::{Elementary as E, StructKind};
-
-fn trap() -> Options {
-    Options::default()
-}
 
 /// `r := a[s]; a[s] := 99` for `a: ARRAY[low..low+3] OF INT := [10, 20, 30, 40]`.
 fn subscripted(options: &Options, ty: E, low: i64, subscript: u64) -> Result<Run, FaultCode> {

@@ -1,14 +1,10 @@
 //! Addresses of places, and what lies at them.
 
-use crate::hand::{Run, Text, array, continuing, every_scan, one, program, tag, unit, value};
+use crate::hand::{Run, Text, array, continuing, every_scan, one, program, tag, trap, unit, value};
 use iecc_ir::FaultCode;
 use iecc_lower::Options;
 use iecc_sema::hir::code::{ExprId, ExprKind, PathId, PathStep, Root, StmtKind};
 use iecc_sema::hir::{Elementary as E, Type};
-
-fn trap() -> Options {
-    Options::default()
-}
 
 fn address(text: &mut Text, of: PathId) -> ExprId {
     text.expr(E::Ulint, ExprKind::Address(of))

@@ -1,13 +1,8 @@
 //! Assignments, copies, branches and leaving.
 
-use crate::hand::{Run, Text, array, one, program, structure, tag, value};
-use iecc_lower::Options;
+use crate::hand::{Run, Text, array, one, program, structure, tag, trap, value};
 use iecc_sema::hir::code::{BinaryOp, PathStep, Root, StmtKind};
 use iecc_sema::hir::{CompareOp, Elementary as E, StructKind};
-
-fn trap() -> Options {
-    Options::default()
-}
 
 #[test]
 fn structures_and_arrays_are_copied_by_value() {
