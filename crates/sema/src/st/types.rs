@@ -1,7 +1,7 @@
 //! The types of a program as the language sees them, each once.
 //!
 //! A [`TypeId`] is equal to another exactly if the types are the same. What a type is stored as is
-//! for `storage.rs`.
+//! for `storage`.
 
 use super::elementary::El;
 use super::signature::PouId;
