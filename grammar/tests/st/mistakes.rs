@@ -479,6 +479,13 @@ fn fix(body: &str) -> Option<String> {
     first.fix.as_ref().map(|fix| fix.replacement.clone())
 }
 
+/// A reserved word that is declared as a name is told once, wherever else it stands.
+#[test]
+fn reserved_words_declared_as_names_are_told_once() {
+    let text = "PROGRAM p\nVAR by : INT; x : INT; END_VAR\nx := f(by) + by;\nFOR x := by TO 9 BY 2 DO\n  by := x;\nEND_FOR;\nEND_PROGRAM";
+    assert_eq!(messages(text), [(Code::E0018, "by".to_owned())]);
+}
+
 /// A declaration that cannot be read is told once, and leaves its section open.
 #[test]
 fn declarations_with_a_slip_stay_declarations() {

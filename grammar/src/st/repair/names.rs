@@ -18,6 +18,9 @@ impl Repair<'_, '_> {
     pub(super) fn is_misnamed(&mut self, at: usize) -> bool {
         let token = self.feed.tokens[at];
         let kind = token.1.kind;
+        if self.is_known_misnomer(token.1) {
+            return true;
+        }
         let keyword = kind.keyword().is_some() && self.brackets.is_empty();
         if !keyword || !self.stands_for_name(at, kind) {
             return false;
@@ -30,6 +33,12 @@ impl Repair<'_, '_> {
             self.report(diagnostic);
         }
         true
+    }
+
+    /// Whether a word that was declared as a name stands where an operand is due.
+    fn is_known_misnomer(&self, token: Token) -> bool {
+        let due = self.pending && self.last_kind().is_some_and(|last| !last.ends_operand());
+        token.kind.keyword().is_some() && due && self.misnamed.contains(&token.symbol)
     }
 
     fn stands_for_name(&self, at: usize, kind: Kind) -> bool {

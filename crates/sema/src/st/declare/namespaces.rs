@@ -206,10 +206,25 @@ impl Analysis<'_> {
         let ExprKind::Member { base, member } = written.kind else {
             return Some(Vec::new());
         };
+        if self.is_standard_library(from, unit, base) {
+            return Some(self.lookup_in(NamespaceId::LIBRARY, member.name).to_vec());
+        }
         match self.found(unit, from, base)?[..] {
             [Def::Namespace(inner), ..] => self.found_in(unit, from, inner, member),
             [] | [Def::Type(_) | Def::Pou(_) | Def::Global(_), ..] => Some(Vec::new()),
         }
+    }
+
+    /// Whether a path is the name that CODESYS or TwinCAT give the library of the standard.
+    fn is_standard_library(&self, from: NamespaceId, unit: UnitId, path: st::Id<st::Expr>) -> bool {
+        let ExprKind::Name(name) = self.unit(unit).arena[path].kind else {
+            return false;
+        };
+        let text = self.text(name);
+        let mut libraries = ["Standard", "Tc2_Standard"].into_iter();
+        self.options.codesys
+            && libraries.any(|library| text.eq_ignore_ascii_case(library))
+            && self.lookup(from, name).is_empty()
     }
 
     fn ambiguous(

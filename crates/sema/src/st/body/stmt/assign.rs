@@ -130,7 +130,11 @@ impl Body<'_, '_> {
             Rights::OwnInput | Rights::OtherOutput | Rights::Value => Message::E3006,
             Rights::All | Rights::Temporary => Message::E3007,
         };
-        self.error(code, operand.range, why);
+        let mut diagnostic = Diagnostic::new(code, self.span(operand.range), why);
+        if place.rights == Rights::OwnInput {
+            diagnostic = diagnostic.note("copy it into a variable, and change that");
+        }
+        self.report(diagnostic);
         None
     }
 
