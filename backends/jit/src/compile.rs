@@ -5,7 +5,7 @@
 
 use crate::block::Block;
 use crate::entry;
-use crate::isa::has_rounding;
+use crate::isa::{has_rounding, has_vectors};
 use crate::plan::Plan;
 use crate::translate::{Program, translate};
 use crate::writes::Writes;
@@ -45,6 +45,7 @@ pub(crate) fn compile(
         layout: &layout,
         plan: &plan,
         has_rounding: has_rounding(unit.isa()),
+        has_vectors: has_vectors(unit.isa()),
         declared: SecondaryMap::new(),
     };
     let declared = declare(&mut program, unit);

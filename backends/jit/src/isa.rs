@@ -66,3 +66,8 @@ pub(crate) fn has_rounding(isa: &dyn TargetIsa) -> bool {
     let sse41 = flags.iter().find(|flag| flag.name == "has_sse41");
     sse41.is_none_or(|flag| flag.as_bool() == Some(true))
 }
+
+/// Whether every processor of the kind moves 16 bytes at once.
+pub(crate) fn has_vectors(isa: &dyn TargetIsa) -> bool {
+    matches!(isa.name(), "x64" | "aarch64")
+}

@@ -6,6 +6,7 @@
 //!
 //! * `plan` finds out which functions the scan needs and which of them can abandon it, `writes` what
 //!   they change.
+//! * `aside` finds out which blocks are better out of the way.
 //! * `nan` finds out where the bits of a NaN matter.
 //! * `translate` turns each into Cranelift's IR.
 //! * `compile` makes machine code of it, and refuses programs that are too large.
@@ -16,6 +17,7 @@
 //! This is the only crate with `unsafe`: in `code`, where each use has its argument.
 #![expect(unsafe_code, reason = "machine code is entered through a pointer")]
 
+mod aside;
 mod block;
 mod code;
 mod compile;

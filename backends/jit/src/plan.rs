@@ -10,6 +10,7 @@
 //! it is paid for ahead. A loop that counts is paid for where it is entered, with as many rounds as there can be, and
 //! at most twice as many as there are.
 
+use crate::aside::blocks_aside;
 use cranelift_entity::{EntityRef, EntitySet, SecondaryMap};
 use iecc_ir::analysis::{Cfg, Counted, Dominators, LocalRanges, Loop, Loops, callees_first};
 use iecc_ir::{
@@ -68,6 +69,8 @@ pub(crate) struct Facts {
     pub(crate) entries: BTreeMap<Block, Vec<Entry>>,
     /// What its integers can be, if it counts or computes indices.
     pub(crate) ranges: Option<LocalRanges>,
+    /// Blocks whose machine code lies behind that of the others.
+    pub(crate) aside: EntitySet<Block>,
 }
 
 /// A way into a loop whose rounds are paid for there.
@@ -135,6 +138,7 @@ impl Plan {
             let dominators = Dominators::new(&cfg);
             loops = Loops::new(&cfg, &dominators);
             facts.ranges = Some(LocalRanges::new(func, &cfg, &dominators, &loops));
+            facts.aside = blocks_aside(func, &cfg, &dominators, &loops);
         }
         let (_, local_bytes) = layout.locals(&module.types, func);
         facts.locals = self.place_locals(local_bytes);

@@ -485,3 +485,92 @@ b3:
         assert_eq!(scan(&mut jit, 0, y).is_ok(), ends, "budget {budget}, y {y}");
     }
 }
+
+/// 16 and more bytes of neighbours, some of them of several types, and a rest of every width; what is
+/// stored in another order or twice counts as the program says.
+#[test]
+fn neighbouring_constants_are_stored_as_written() {
+    let mut jit = program(
+        "a: i8, b: i1, c: i16, d: i32, e: i64, f: f32, g: f64, h: [5 x i8], i: i32",
+        "scan @s
+fn @s[]() -> () {
+b0:
+  v0: i8 = const 17
+  v1: i1 = const 1
+  v2: i16 = const 4660
+  v3: i32 = const -2
+  v4: i64 = const 81985529216486895
+  v5: f32 = const 1.0
+  v6: f64 = const -2.0
+  v7: i32 = const 7
+  v8: i32 = load input.x
+  store state.i, v8
+  store state.g, v6
+  store state.h[4], v0
+  store state.h[0], v0
+  store state.h[2], v0
+  store state.h[1], v0
+  store state.h[v8], v0
+  store state.d, v3
+  store state.e, v4
+  store state.c, v2
+  store state.b, v1
+  store state.a, v0
+  store state.f, v5
+  store state.i, v7
+  v9: i32 = load state.d
+  store state.d, v8
+  v10: i32 = load state.d
+  v11: i32 = mul v9, v10
+  store output.r, v11
+  store state.d, v7
+  return
+}
+",
+    );
+    // d is -2, then x, which is 3: -6. At the end d and i are 7; h[3] is 17 because x is 3.
+    assert_eq!(scan(&mut jit, 3, 0), Ok(-6));
+    let mut expected = vec![17, 1];
+    expected.extend(0x1234i16.to_ne_bytes());
+    expected.extend(7i32.to_ne_bytes());
+    expected.extend(0x0123_4567_89ab_cdefi64.to_ne_bytes());
+    expected.extend(1f32.to_ne_bytes());
+    expected.extend([0; 4]);
+    expected.extend((-2f64).to_ne_bytes());
+    expected.extend([17; 5]);
+    expected.extend([0; 3]);
+    expected.extend(7i32.to_ne_bytes());
+    expected.extend([0; 4]);
+    assert_eq!(jit.state(), expected);
+}
+
+/// Two references to the same place: each load sees the store before it.
+#[test]
+fn a_constant_is_seen_through_another_reference() {
+    let mut jit = program(
+        "s: [2 x i32]",
+        "scan @s
+fn @both[one: [2 x i32], two: [2 x i32]]() -> (i32) {
+b0:
+  v0: i32 = const 5
+  v1: i32 = const 6
+  v2: i32 = const 8
+  store one[0], v0
+  store one[1], v1
+  v3: i32 = load two[1]
+  store two[1], v2
+  v4: i32 = load one[1]
+  v5: i32 = mul v3, v4
+  return v5
+}
+fn @s[]() -> () {
+b0:
+  v0: i32 = call @both[state.s, state.s]()
+  store output.r, v0
+  return
+}
+",
+    );
+    assert_eq!(scan(&mut jit, 0, 0), Ok(48));
+    assert_eq!(jit.state(), [5i32, 8].map(i32::to_ne_bytes).concat());
+}

@@ -101,7 +101,7 @@ impl Translator<'_, '_> {
         let Some(exists) = from.exists else {
             return self.call_move(to, from, bytes);
         };
-        let [found, missing, next] = [(); 3].map(|()| self.builder.create_block());
+        let [found, missing, next] = [(); 3].map(|()| self.new_block());
         self.ins().brif(exists, found, &[], missing, &[]);
         self.builder.switch_to_block(found);
         self.call_move(to, from, bytes);
@@ -122,7 +122,7 @@ impl Translator<'_, '_> {
 }
 
 /// Cuts bytes into pieces of machine words, largest first.
-fn pieces(bytes: u64) -> impl Iterator<Item = (i32, clif::Type)> {
+pub(super) fn pieces(bytes: u64) -> impl Iterator<Item = (i32, clif::Type)> {
     let mut at = 0;
     std::iter::from_fn(move || {
         let (size, ty) = match bytes - at {

@@ -12,7 +12,7 @@ impl Translator<'_, '_> {
     pub(super) fn terminator(&mut self, block: Block) {
         let (func, facts) = (self.func, self.facts);
         let origin = func.block(block).terminator_origin;
-        self.settle();
+        self.write_all();
         for entry in facts.entries.get(&block).into_iter().flatten() {
             self.pay_for_rounds(entry, origin);
         }
@@ -81,7 +81,7 @@ impl Translator<'_, '_> {
         if args.is_empty() {
             return to;
         }
-        let landing = self.builder.create_block();
+        let landing = self.new_block();
         landings.push((landing, to, args));
         landing
     }
@@ -110,7 +110,7 @@ impl Translator<'_, '_> {
     /// Leaves the function if a callee returned a fault; goes on in a new block otherwise.
     pub(super) fn leave_on_fault(&mut self, status: clif::Value) {
         let exit = self.fault_exit();
-        let next = self.builder.create_block();
+        let next = self.new_block();
         self.ins().brif(status, exit, &[status.into()], next, &[]);
         self.builder.switch_to_block(next);
     }
@@ -208,7 +208,7 @@ impl Translator<'_, '_> {
         let left = self.ins().isub(budget, price);
         self.builder.def_var(self.budget, left);
         let broke = self.ins().icmp(IntCC::SignedLessThan, budget, price);
-        let (stop, next) = (self.builder.create_block(), self.builder.create_block());
+        let (stop, next) = (self.new_block(), self.new_block());
         self.builder.set_cold_block(stop);
         self.ins().brif(broke, stop, &[], next, &[]);
         self.builder.switch_to_block(stop);

@@ -25,6 +25,13 @@ pub(super) struct Address {
     bit: Option<Index>,
 }
 
+impl Address {
+    /// Whether it is a bit of what lies there.
+    pub(super) fn is_bit(&self) -> bool {
+        self.bit.is_some()
+    }
+}
+
 impl Translator<'_, '_> {
     pub(super) fn address(&mut self, place: &Place) -> Address {
         let root = self.program.module.root_type(self.func, place.root);
@@ -250,6 +257,7 @@ impl Translator<'_, '_> {
 
     pub(super) fn load(&mut self, place: &Place) -> clif::Value {
         self.settle_for(place);
+        self.store_constants_for(place);
         let address = self.address(place);
         self.load_from(&address)
     }
@@ -287,8 +295,15 @@ impl Translator<'_, '_> {
     }
 
     pub(super) fn store(&mut self, place: &Place, value: Value) {
+        self.store_constants_for(place);
         let address = self.address(place);
         let constant = self.func.constant(value);
+        if let Some(bits) = constant {
+            self.settle_for(place);
+            if self.store_later(place, &address, bits) {
+                return;
+            }
+        }
         let value = self.stored_value(place, &address, value);
         self.if_exists(&address, |this| {
             let value = match address.bit {
@@ -305,7 +320,7 @@ impl Translator<'_, '_> {
         let Some(exists) = address.exists else {
             return then(self);
         };
-        let (inside, next) = (self.builder.create_block(), self.builder.create_block());
+        let (inside, next) = (self.new_block(), self.new_block());
         self.ins().brif(exists, inside, &[], next, &[]);
         self.builder.switch_to_block(inside);
         then(self);
@@ -338,6 +353,7 @@ impl Translator<'_, '_> {
     }
 
     pub(super) fn elapsed(&mut self, place: &Place, unit_ns: u64, ty: Type) -> clif::Value {
+        self.store_constants_for(place);
         let address = self.address(place);
         let kept = self.load_from(&address);
         let now = self.now();

@@ -7,6 +7,7 @@
 
 mod bulk;
 mod calls;
+mod constants;
 mod control;
 mod memory;
 mod nan;
@@ -34,6 +35,8 @@ pub(crate) struct Program<'m> {
     pub(crate) plan: &'m Plan,
     /// Whether rounding to integers is one instruction.
     pub(crate) has_rounding: bool,
+    /// Whether every processor of the kind moves 16 bytes at once.
+    pub(crate) has_vectors: bool,
     /// The declared Cranelift function of each IR function.
     pub(crate) declared: SecondaryMap<FuncId, Option<cranelift_module::FuncId>>,
 }
@@ -132,6 +135,8 @@ struct Translator<'t, 'm> {
     nan: NanClasses,
     /// Floats in memory that may be the wrong NaN.
     waiting: nan::Waiting,
+    /// Constants that memory does not hold yet.
+    constants: Vec<constants::Constant>,
     /// Returns the status it is given; made when first needed.
     fault_exit: Option<clif::Block>,
 }
@@ -172,6 +177,7 @@ pub(crate) fn translate(
         at: func.entry(),
         nan: NanClasses::new(),
         waiting: nan::Waiting::default(),
+        constants: Vec::new(),
         fault_exit: None,
         unit,
         builder,
@@ -220,8 +226,18 @@ impl Translator<'_, '_> {
         self.finish_fault_exit();
     }
 
+    /// A block of machine code that belongs to the block of the program that is being translated.
+    fn new_block(&mut self) -> clif::Block {
+        let block = self.builder.create_block();
+        if self.facts.aside.contains(self.at) {
+            self.builder.set_cold_block(block);
+        }
+        block
+    }
+
     fn declare_block(&mut self, block: Block) {
-        let target = self.builder.create_block();
+        self.at = block;
+        let target = self.new_block();
         self.blocks[block] = Some(target);
         for &param in &self.func.block(block).params {
             let ty = clif_type(self.func.value_type(param));
@@ -253,11 +269,11 @@ impl Translator<'_, '_> {
             InstData::Load { place } => self.load(place),
             InstData::Store { place, value } => return self.store(place, *value),
             InstData::Copy { to, from } => {
-                self.settle();
+                self.write_all();
                 return self.copy(to, from);
             }
             InstData::Clear { place } => {
-                self.settle();
+                self.write_all();
                 return self.clear(place);
             }
             InstData::Address { place } => self.address_of(place),
@@ -265,11 +281,17 @@ impl Translator<'_, '_> {
             InstData::Elapsed { place, unit_ns, ty } => self.elapsed(place, *unit_ns, *ty),
             InstData::Step { unit_ns, ty } => self.step(*unit_ns, *ty),
             InstData::Call { func, refs, args } => {
-                self.settle();
+                self.write_all();
                 return self.call(inst, *func, refs, args);
             }
         };
         self.values[func.result(inst)] = Some(result);
+    }
+
+    /// Brings memory to what the program has stored so far.
+    fn write_all(&mut self) {
+        self.store_constants();
+        self.settle();
     }
 
     /// A field of the context that no code changes.

@@ -76,7 +76,6 @@ impl Translator<'_, '_> {
             } else {
                 Type::I64
             };
-            self.settle_for(place);
             return self.constant(integer, bits);
         }
         match self.nan[value] {
@@ -125,7 +124,7 @@ impl Translator<'_, '_> {
         if stores.is_empty() {
             return;
         }
-        let (mend, next) = (self.builder.create_block(), self.builder.create_block());
+        let (mend, next) = (self.new_block(), self.new_block());
         self.builder.set_cold_block(mend);
         let ends = ends(self.func, &stores, &translated);
         for ty in [Type::F32, Type::F64] {
@@ -147,7 +146,7 @@ impl Translator<'_, '_> {
     /// Goes to `mend` if one of two floats is NaN.
     fn look_at(&mut self, x: Value, y: Value, mend: clif::Block) {
         let [x, y] = [x, y].map(|v| self.value(v));
-        let next = self.builder.create_block();
+        let next = self.new_block();
         let is_nan = self.ins().fcmp(FloatCC::Unordered, x, y);
         self.ins().brif(is_nan, mend, &[], next, &[]);
         self.builder.switch_to_block(next);
