@@ -6,6 +6,7 @@
 use crate::block::Block;
 use crate::compile::Compiled;
 use crate::context::ScanContext;
+use crate::isa::has_vectors;
 use crate::writes::Target;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{
@@ -16,6 +17,9 @@ use cranelift_module::Module as MachineModule;
 
 /// Bytes that are copied without a loop.
 const UNROLLED_BYTES: u64 = 128;
+
+/// Bytes that a round of a loop copies.
+const ROUND_BYTES: u64 = 64;
 
 /// Sets the signature of the entry.
 pub(crate) fn signature(signature: &mut clif::Signature, pointer: clif::Type) {
@@ -32,6 +36,7 @@ pub(crate) fn build(
     frontend: &mut FunctionBuilderContext,
 ) {
     let config = unit.target_config();
+    let has_vectors = has_vectors(unit.isa());
     let scan = unit.declare_func_in_func(compiled.scan, target);
     let mut builder = FunctionBuilder::new(target, frontend);
     let entry = builder.create_block();
@@ -44,6 +49,11 @@ pub(crate) fn build(
         builder,
         layout: &compiled.block,
         pointer: config.pointer_type(),
+        widest: if has_vectors {
+            types::I8X16
+        } else {
+            types::I64
+        },
         block,
         outputs,
     };
@@ -54,6 +64,8 @@ struct Entry<'e> {
     builder: FunctionBuilder<'e>,
     layout: &'e Block,
     pointer: clif::Type,
+    /// What moves most bytes at once.
+    widest: clif::Type,
     block: clif::Value,
     outputs: clif::Value,
 }
@@ -131,7 +143,7 @@ impl Entry<'_> {
     /// Copies bytes between places that do not overlap.
     fn copy(&mut self, from: clif::Value, to: clif::Value, len: u64) {
         let looped = if len > UNROLLED_BYTES {
-            len / 64 * 64
+            len / ROUND_BYTES * ROUND_BYTES
         } else {
             0
         };
@@ -139,7 +151,7 @@ impl Entry<'_> {
             self.copy_loop(from, to, looped);
         }
         let mut at = looped;
-        for ty in [types::I64, types::I32, types::I16, types::I8] {
+        for ty in [self.widest, types::I64, types::I32, types::I16, types::I8] {
             let width = u64::from(ty.bytes());
             while len - at >= width {
                 self.move_one(ty, from, to, at as i32);
@@ -156,10 +168,11 @@ impl Entry<'_> {
         self.builder.switch_to_block(body);
         let source = self.builder.ins().iadd(from, at);
         let target = self.builder.ins().iadd(to, at);
-        for part in 0..8 {
-            self.move_one(types::I64, source, target, part * 8);
+        let width = self.widest.bytes();
+        for part in (0..ROUND_BYTES as u32).step_by(width as usize) {
+            self.move_one(self.widest, source, target, part as i32);
         }
-        let after = self.offset(at, 64);
+        let after = self.offset(at, ROUND_BYTES);
         let end = self.builder.ins().iconst(self.pointer, len as i64);
         let more = self.builder.ins().icmp(IntCC::UnsignedLessThan, after, end);
         self.builder

@@ -45,6 +45,8 @@ fn flags(purpose: Purpose) -> Flags {
     let mut flags = settings::builder();
     for (name, value) in [
         ("opt_level", "speed"),
+        // A line of the cache, so that how fast a loop is does not depend on what lies before its function.
+        ("log2_min_function_alignment", "6"),
         ("enable_verifier", word(cfg!(debug_assertions))),
         // Functions of the IR return as many values as they like.
         ("enable_multi_ret_implicit_sret", "true"),
