@@ -207,7 +207,9 @@ impl Plan {
                 facts.work = facts.work.saturating_add(ahead);
                 continue;
             }
-            if let Some(entries) = entries(facts, func, cfg, each, body) {
+            if !self.may_end_early(facts, func, cfg, each, body)
+                && let Some(entries) = entries(facts, func, cfg, each, body)
+            {
                 for (from, entry) in entries {
                     facts.entries.entry(from).or_default().push(entry);
                 }
@@ -218,6 +220,29 @@ impl Plan {
                 *payment = body.max(*payment);
             }
         }
+    }
+
+    /// Whether a fault may end a loop long before it has done what is paid for it ahead.
+    fn may_end_early(
+        &self,
+        facts: &Facts,
+        func: &Function,
+        cfg: &Cfg,
+        each: &Loop,
+        body: u64,
+    ) -> bool {
+        let is_fault = |&to: &Block| matches!(func.terminator(to), Terminator::Fault(_));
+        let faults = |&block: &Block| {
+            cfg.successors(block).iter().any(is_fault)
+                || func
+                    .calls_in(block)
+                    .any(|callee| self.facts[callee].can_fault)
+        };
+        let trips = facts.ranges.as_ref().and_then(|r| r.trips(each.header));
+        let ahead = trips.map_or(u64::MAX, |trips| {
+            trips.most.saturating_add(1).saturating_mul(body)
+        });
+        ahead > AHEAD_WORK && each.blocks.iter().any(faults)
     }
 
     /// Callers come first, so what `func` itself is passed is known.

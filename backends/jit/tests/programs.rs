@@ -574,3 +574,42 @@ b0:
     assert_eq!(scan(&mut jit, 0, 0), Ok(48));
     assert_eq!(jit.state(), [5i32, 8].map(i32::to_ne_bytes).concat());
 }
+
+/// `FOR i := x TO 2147483646` that is left in its fourth round is no work for 2,147,483,646 rounds, and neither
+/// is one that a fault ends.
+#[test]
+fn a_loop_that_ends_early_is_paid_for_as_it_goes() {
+    let rounds = |end: &str| {
+        format!(
+            "scan @s
+fn @s[]() -> () {{
+b0:
+  v0: i32 = load input.x
+  v1: i32 = const 2147483646
+  v2: i32 = const 1
+  v3: i32 = const 3
+  v4: i32 = const 0
+  jump b1(v0, v4)
+b1(v5: i32, v6: i32):
+  v7: i32 = add v6, v2
+  v8: i1 = sgt v7, v3
+  brif v8, b3, b2
+b2:
+  v9: i32 = add v5, v2
+  v10: i1 = sle v9, v1
+  brif v10, b1(v9, v7), b4
+b3:
+  {end}
+b4:
+  store output.r, v7
+  return
+}}
+"
+        )
+    };
+    let mut left = program("", &rounds("jump b4")).with_budget(1000);
+    assert_eq!(scan(&mut left, 0, 0), Ok(4));
+    let mut failed = program("", &rounds("fault divide")).with_budget(1000);
+    let code = scan(&mut failed, 0, 0).unwrap_err().code;
+    assert_eq!(code, FaultCode::Divide);
+}

@@ -17,8 +17,8 @@ pub struct Trips {
     pub is_exact: bool,
 }
 
-/// What bounds a loop, as values that are known before it: it goes back at most as often as `step` fits between
-/// what `param` is at first and `limit`.
+/// What ends a loop, as values that are known before it: it goes back as often as `step` fits between what `param`
+/// is at first and `limit`. Nothing else ends it, but for a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Counted {
     /// The parameter of the header that counts.
@@ -129,8 +129,9 @@ pub(super) fn of(
     let bounds = exits.iter().filter(|&&block| always(block));
     let bounds = bounds.filter_map(|&block| bound(func, cfg, ranges, each, block));
     let (mut trips, counted) = bounds.min_by_key(|(trips, _)| trips.most)?;
-    trips.is_exact &= exits.len() == 1;
-    Some((trips, counted))
+    let is_only_exit = exits.len() == 1;
+    trips.is_exact &= is_only_exit;
+    Some((trips, counted.filter(|_| is_only_exit)))
 }
 
 /// Blocks from which the loop can be left, but for a fault.
