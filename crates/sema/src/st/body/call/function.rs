@@ -130,7 +130,8 @@ impl Body<'_, '_> {
                     let earlier = given.iter_mut().filter_map(|(var, operand)| {
                         (var.section.direction() != Some(Direction::InOut)).then_some(operand)
                     });
-                    let operand = self.next_operand(earlier, |body| body.expr(value, Some(var.ty)));
+                    let operand =
+                        self.next_argument(earlier, |body| body.expr(value, Some(var.ty)));
                     given.push((var, operand));
                 }
             }

@@ -52,6 +52,20 @@ impl Body<'_, '_> {
         made
     }
 
+    /// As `next_operand`, for arguments: those behind it that are copied see what it changed.
+    pub(crate) fn next_argument<'o>(
+        &mut self,
+        earlier: impl IntoIterator<Item = &'o mut Operand>,
+        make: impl FnOnce(&mut Self) -> Operand,
+    ) -> Operand {
+        let effects = self.effects;
+        let mut made = self.next_operand(earlier, make);
+        if self.effects != effects {
+            self.keep(&mut made);
+        }
+        made
+    }
+
     /// Evaluates an operand now.
     fn keep(&mut self, operand: &mut Operand) {
         let changes = match &operand.kind {

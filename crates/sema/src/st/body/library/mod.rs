@@ -320,7 +320,7 @@ impl Body<'_, '_> {
                         continue;
                     }
                     let earlier = given.operands.iter_mut().map(|(_, operand)| operand);
-                    let operand = self.next_operand(earlier, |body| body.expr(value, source));
+                    let operand = self.next_argument(earlier, |body| body.expr(value, source));
                     let generic = position.and_then(|position| parameters[position].generic());
                     let ty = self.number_beside(&operand);
                     typed.extend(generic.zip(ty));
