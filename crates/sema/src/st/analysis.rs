@@ -116,6 +116,8 @@ pub(crate) struct Analysis<'a> {
     /// The unit tests.
     pub testing: super::testing::Testing,
     pub found: Diagnostics,
+    /// How many names were compared with all others.
+    pub suggestions: std::cell::Cell<u32>,
     /// What is given only where there are no errors.
     pub warnings: Vec<Diagnostic>,
     /// How deep declarations are being resolved.
@@ -131,6 +133,9 @@ pub(crate) struct Analysis<'a> {
     /// How many of `pous` were there before any body was looked at.
     pub declared_pous: usize,
 }
+
+/// How many names that mean nothing are compared with all others.
+const MAX_SUGGESTIONS: u32 = 100;
 
 /// How deep types, instances and constants may refer to one another.
 pub(crate) const MAX_RESOLUTION_DEPTH: u32 = 128;
@@ -198,13 +203,18 @@ impl<'a> Analysis<'a> {
         defs.map_or(&[], Vec::as_slice)
     }
 
-    /// A name close to one that means nothing.
+    /// A name close to one that means nothing; not for ever more names, as each is compared with all.
     pub(crate) fn similar(
         &self,
         name: Symbol,
         candidates: impl IntoIterator<Item = Symbol>,
     ) -> Option<&'a str> {
         let names = self.names;
+        let asked = self.suggestions.get();
+        if asked == MAX_SUGGESTIONS {
+            return None;
+        }
+        self.suggestions.set(asked + 1);
         closest(
             names.text(name),
             candidates.into_iter().map(|c| names.text(c)),

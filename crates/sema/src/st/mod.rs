@@ -259,6 +259,7 @@ impl<'a> Analysis<'a> {
             computed: initial::Computed::default(),
             testing: testing::Testing::new(names),
             found: Diagnostics::new(),
+            suggestions: std::cell::Cell::new(0),
             warnings: Vec::new(),
             depth: 0,
             declaring: 0,

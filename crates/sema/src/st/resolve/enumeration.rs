@@ -10,6 +10,7 @@ use iecc_ast::Symbol;
 use iecc_ast::st;
 use iecc_diag::{Code, Diagnostic};
 use iecc_source::TextRange;
+use rustc_hash::FxHashSet;
 
 impl Analysis<'_> {
     pub(super) fn enumeration(
@@ -32,15 +33,32 @@ impl Analysis<'_> {
             values: Vec::new(),
             span: self.span(scope.unit, range),
         });
-        let mut next = 0;
+        let (mut next, mut known) = (0, FxHashSet::default());
         for value in &self.unit(scope.unit).arena[values] {
             let written = value.value;
             let number = written.and_then(|expr| self.constant_int(scope, expr, TypeId::of(el)));
             let number = number.unwrap_or(next);
             next = number + 1;
-            self.add_enumerator(scope, ty, value.name, number);
+            if known.insert(value.name.name) {
+                self.counted_within(scope, el, value.name, number);
+                self.add_enumerator(ty, value.name.name, number);
+            } else {
+                let span = self.span(scope.unit, value.name.range);
+                let message = format!("`{}` is declared twice", self.text(value.name.name));
+                self.error(Code::E1003, span, message);
+            }
         }
         ty
+    }
+
+    /// A value that follows the one before it can be above the largest of the type.
+    fn counted_within(&mut self, scope: TypeScope<'_>, el: El, name: st::Ident, number: i128) {
+        let (low, high) = el.range();
+        if !(low..=high).contains(&number) {
+            let span = self.span(scope.unit, name.range);
+            let message = format!("{number} does not fit {} ({low} to {high})", el.name());
+            self.error(Code::E2005, span, message);
+        }
     }
 
     /// The type of the values of an enumeration; `None` after a mistake.
@@ -71,20 +89,14 @@ impl Analysis<'_> {
         None
     }
 
-    fn add_enumerator(&mut self, scope: TypeScope<'_>, ty: TypeId, name: st::Ident, number: i128) {
+    fn add_enumerator(&mut self, ty: TypeId, name: Symbol, number: i128) {
         let TypeKind::Enum(index) = *self.types.kind(ty) else {
             unreachable!("the type of an enumeration")
         };
         let def = &mut self.types.enums[index as usize];
-        if def.values.iter().any(|(known, _)| *known == name.name) {
-            let span = self.span(scope.unit, name.range);
-            let message = format!("`{}` is declared twice", self.text(name.name));
-            self.error(Code::E1003, span, message);
-            return;
-        }
-        def.values.push((name.name, number));
+        def.values.push((name, number));
         if !def.qualified {
-            let meanings = self.enumerators.entry(name.name).or_default();
+            let meanings = self.enumerators.entry(name).or_default();
             meanings.push((ty, number));
         }
     }
