@@ -427,7 +427,7 @@ impl Analysis<'_> {
             Some(place) => self.add_name(unit, access.name, name, place),
             None => {
                 let range = self.unit(unit).arena[access.path].range;
-                let what = "a path to a number of several bytes that others share";
+                let what = "a path to a number that shares its bytes with others";
                 self.unsupported(unit, range, what);
             }
         }
