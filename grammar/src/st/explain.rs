@@ -106,11 +106,27 @@ impl Explain<'_, '_> {
             (Some(Kind::Int), Some(Kind::CloseBracket)) if has("..") => {
                 diagnostic.note("an array has a first and a last subscript: `ARRAY[0..9]`")
             }
+            (_, Some(Kind::Word)) if self.negated_operator(at).is_some() => {
+                let (start, _, end) = self.feed[at];
+                let span = Span::new(self.tokens.file, start, end);
+                let instead = self.negated_operator(at).unwrap_or_default();
+                diagnostic.fix(format!("write `{instead}`"), span, instead)
+            }
             (Some(Kind::Word), Some(Kind::Word)) if has(":") => {
                 diagnostic.note("the name comes before its type: `count : INT;`")
             }
             _ => diagnostic,
         }
+    }
+
+    /// What ANDN and its like, which belong to instruction lists, are in Structured Text.
+    fn negated_operator(&self, at: usize) -> Option<&'static str> {
+        let (start, _, end) = *self.feed.get(at)?;
+        let text = &self.tokens.text[start as usize..end as usize];
+        let operators = [("ANDN", "AND NOT"), ("ORN", "OR NOT"), ("XORN", "XOR NOT")];
+        let found = operators.into_iter();
+        let mut found = found.filter(|(word, _)| text.eq_ignore_ascii_case(word));
+        found.next().map(|(_, instead)| instead)
     }
 
     /// Whether a token touches the next one.

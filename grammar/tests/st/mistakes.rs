@@ -391,6 +391,7 @@ fn signs_and_words_of_other_languages_are_known() {
         ("x := 0xFF;", Code::E0019, "0xFF", "16#FF"),
         ("x := 0b101;", Code::E0019, "0b101", "2#101"),
         ("t(PT := 500ms);", Code::E0019, "500ms", "T#500ms"),
+        ("x := a ANDN b;", Code::E0010, "ANDN", "AND NOT"),
         ("x := 3,14;", Code::E0010, ",", "."),
         ("x := .5;", Code::E0010, ".", "0"),
         ("IF x := 1 THEN y := 2; END_IF;", Code::E0010, ":=", "="),
