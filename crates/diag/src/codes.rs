@@ -94,6 +94,8 @@ codes! {
     E0033 Error "declaration stands outside of a section";
     E0034 Error "underline is misplaced in a name";
     E0035 Warning "comment stands in a comment";
+    E0036 Error "body is in a language that is not compiled";
+    E0037 Error "keyword is misspelled";
     // 1 names
     E1001 Error "tag does not exist";
     E1002 Error "member does not exist";

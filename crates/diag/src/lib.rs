@@ -14,4 +14,4 @@ mod suggest;
 pub use codes::{Code, Severity};
 pub use diagnostic::{Diagnostic, Diagnostics, Fix, Label};
 pub use render::{render_json, render_text};
-pub use suggest::closest;
+pub use suggest::{closest, closest_within};

@@ -4,12 +4,22 @@
 /// a third of the letters and at most three differ, and never all. Of equally close ones the first. Names of more than
 /// 64 letters get no suggestion, which keeps the work small.
 pub fn closest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+    let third = name.chars().count().div_ceil(3);
+    closest_within(name, third.min(3), candidates)
+}
+
+/// The candidate closest to `name`, ignoring ASCII case, if at most `limit` letters differ, and not
+/// all. Of equally close ones the first. Names of more than 64 letters get no suggestion.
+pub fn closest_within<'c>(
+    name: &str,
+    limit: usize,
+    candidates: impl IntoIterator<Item = &'c str>,
+) -> Option<&'c str> {
     let wanted: Vec<char> = name.to_ascii_lowercase().chars().collect();
     if wanted.len() > 64 {
         return None;
     }
-    let third = wanted.len().div_ceil(3);
-    let limit = third.min(3).min(wanted.len().saturating_sub(1));
+    let limit = limit.min(wanted.len().saturating_sub(1));
     let measured = candidates.into_iter().filter_map(|candidate| {
         let other: Vec<char> = candidate.to_ascii_lowercase().chars().collect();
         let close = other.len().abs_diff(wanted.len()) <= limit;

@@ -115,28 +115,6 @@ struct Translator<'r, 't> {
     found: &'r mut Diagnostics,
 }
 
-/// Words that close or divide blocks elsewhere.
-const CLOSERS: [(&str, Kind); 8] = [
-    ("ENDIF", Kind::EndIf),
-    ("ENDCASE", Kind::EndCase),
-    ("ENDFOR", Kind::EndFor),
-    ("ENDWHILE", Kind::EndWhile),
-    ("ENDREPEAT", Kind::EndRepeat),
-    ("ENDVAR", Kind::EndVar),
-    ("ENDSTRUCT", Kind::EndStruct),
-    ("ENDTYPE", Kind::EndType),
-];
-
-/// Words behind a lone END.
-const OPENERS: [(Kind, Kind); 6] = [
-    (Kind::If, Kind::EndIf),
-    (Kind::Case, Kind::EndCase),
-    (Kind::For, Kind::EndFor),
-    (Kind::While, Kind::EndWhile),
-    (Kind::Repeat, Kind::EndRepeat),
-    (Kind::Var, Kind::EndVar),
-];
-
 impl Translator<'_, '_> {
     fn step(&mut self) {
         let token = self.list[self.at];
@@ -282,48 +260,24 @@ impl Translator<'_, '_> {
         true
     }
 
+    /// ELSIF as other languages spell it.
     fn word(&mut self) -> bool {
-        let (start, _, end) = self.list[self.at];
-        let text = self.text(start, end).to_ascii_uppercase();
-        if matches!(text.as_str(), "ELSEIF" | "ELSE_IF" | "ELIF") && self.leads_to_then() {
-            self.replace(
-                1,
-                Kind::Elsif,
-                "a further condition begins with ELSIF",
-                Some("ELSIF"),
-            );
-            return true;
-        }
-        let closer = CLOSERS.iter().find(|(word, _)| *word == text);
-        let known = match closer {
-            Some((_, kind)) => Some((1, *kind)),
-            None if text == "END" => self.two_words().map(|kind| (2, kind)),
-            None => None,
-        };
-        let Some((count, kind)) = known.filter(|(count, kind)| self.can_close(*count, *kind))
-        else {
+        let (start, token, end) = self.list[self.at];
+        let text = self.text(start, end).to_owned();
+        let spelled = ["ELSEIF", "ELSE_IF", "ELIF"];
+        let known = spelled.iter().any(|word| word.eq_ignore_ascii_case(&text));
+        if !known || !self.leads_to_then() {
             return false;
-        };
-        let instead = kind.keyword().expect("closers are keywords");
-        let note = format!("this block ends with {instead}");
-        self.replace(count, kind, &note, Some(instead));
+        }
+        let span = Span::new(self.tokens.file, start, end);
+        let message = format!("found `{text}`, expected ELSIF");
+        let diagnostic = Diagnostic::new(Code::E0037, span, message)
+            .label("expected ELSIF")
+            .fix("write ELSIF", span, "ELSIF");
+        self.found.push(diagnostic);
+        self.push(Kind::Elsif, token, start, end);
+        self.at += 1;
         true
-    }
-
-    /// `END IF`.
-    fn two_words(&self) -> Option<Kind> {
-        let next = self.kind_ahead(1)?;
-        let pair = OPENERS.iter().find(|(opener, _)| *opener == next);
-        pair.map(|(_, closer)| *closer)
-    }
-
-    /// Whether no declaration, assignment or call begins with these words.
-    fn can_close(&self, count: usize, kind: Kind) -> bool {
-        let next = self.kind_ahead(count);
-        let statement = matches!(next, None | Some(Kind::Semicolon));
-        let begins =
-            self.begins_line() && !matches!(next, Some(Kind::Colon | Kind::Comma | Kind::At));
-        statement || kind == Kind::EndVar && begins && next != Some(Kind::Assign)
     }
 
     /// Whether THEN stands before the next semicolon.

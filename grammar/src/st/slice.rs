@@ -5,6 +5,7 @@
 //! and what stands between them are units like any other.
 
 use super::lexer::Tokens;
+use super::repair::{is_misspelt_closer, misspelt_unit};
 use super::token::{Kind, Token};
 use iecc_source::ContentHash;
 use std::ops::Range;
@@ -79,12 +80,18 @@ impl Slicer<'_, '_> {
         if kind.is_trivia() {
             return at + 1;
         }
+        if let Some(kind) = self.misspelt_unit(at) {
+            self.close_before(at);
+            return self.open_fragment(kind, at);
+        }
         if self.opens_unit(kind, at) {
             self.close_before(at);
             return self.open_fragment(kind, at);
         }
         match self.open {
-            Some(FragmentKind::Unit(opener)) if closes(opener, kind) => {
+            Some(FragmentKind::Unit(opener))
+                if closes(opener, kind) || self.misspelt_closer(opener, at) =>
+            {
                 let end = self.behind_semicolon(at);
                 self.close(end);
                 end
@@ -95,6 +102,24 @@ impl Slicer<'_, '_> {
                 at + 1
             }
         }
+    }
+
+    /// The unit that a word outside of all units was meant to open.
+    fn misspelt_unit(&self, at: usize) -> Option<Kind> {
+        let token = self.tokens.list[at];
+        let outside = self.open.is_none() && token.kind == Kind::Word && self.next_is_name(at);
+        outside.then(|| misspelt_unit(self.tokens.slice(token)))?
+    }
+
+    /// Whether a word was meant to close a unit, with a word behind it that was meant to open the next.
+    fn misspelt_closer(&self, opener: Kind, at: usize) -> bool {
+        let token = self.tokens.list[at];
+        let opens = |next: &Token| {
+            next.kind == Kind::Word && misspelt_unit(self.tokens.slice(*next)).is_some()
+        };
+        token.kind == Kind::Word
+            && is_misspelt_closer(self.tokens.slice(token), opener)
+            && self.following(at).next().is_some_and(opens)
     }
 
     fn open_fragment(&mut self, kind: Kind, at: usize) -> usize {

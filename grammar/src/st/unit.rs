@@ -20,17 +20,19 @@ use iecc_source::Span;
 pub fn parse_unit(tokens: &Tokens<'_>, fragment: &Fragment, diagnostics: &mut Diagnostics) -> Unit {
     let mut found = Diagnostics::new();
     let feed = feed(tokens, fragment, &mut found);
-    let mut lost = Vec::new();
+    let mut lost_names = fragment.kind == FragmentKind::Stray;
     let (kind, arena) = match fragment.kind {
         FragmentKind::Unit(opener) => {
             let read = parse(tokens, fragment, opener, &feed, &mut found);
-            lost = read.lost;
+            lost_names = read.lost_names;
             (read.kind, read.arena)
         }
         FragmentKind::Trailing => (UnitKind::Nothing, Arena::new()),
         FragmentKind::Stray => {
             stray(tokens, &feed.tokens, &mut found);
-            (UnitKind::Error, Arena::new())
+            let mut build = Build::new(tokens, fragment.start, false);
+            let kind = damaged_unit(&mut build, Kind::Type, &feed);
+            (kind, build.arena)
         }
         FragmentKind::NamespaceOpen | FragmentKind::NamespaceClose => {
             (UnitKind::Nothing, Arena::new())
@@ -49,7 +51,7 @@ pub fn parse_unit(tokens: &Tokens<'_>, fragment: &Fragment, diagnostics: &mut Di
         arena,
         pragmas: feed.pragmas,
         has_errors,
-        lost,
+        lost_names,
     }
 }
 
@@ -57,7 +59,8 @@ pub fn parse_unit(tokens: &Tokens<'_>, fragment: &Fragment, diagnostics: &mut Di
 struct Read {
     kind: UnitKind,
     arena: Arena,
-    lost: Vec<Symbol>,
+    /// As in [`Unit`].
+    lost_names: bool,
 }
 
 fn parse(
@@ -69,10 +72,11 @@ fn parse(
 ) -> Read {
     if let Some(diagnostic) = nesting_error(tokens.file, &feed.tokens) {
         found.push(diagnostic);
+        let mut build = Build::new(tokens, fragment.start, false);
         return Read {
-            kind: UnitKind::Error,
-            arena: Arena::new(),
-            lost: Vec::new(),
+            kind: damaged_unit(&mut build, opener, feed),
+            arena: build.arena,
+            lost_names: true,
         };
     }
     let mut build = Build::new(tokens, fragment.start, true);
@@ -81,19 +85,21 @@ fn parse(
         return Read {
             kind,
             arena: build.arena,
-            lost: Vec::new(),
+            lost_names: false,
         };
     }
     let feed = &translated(tokens, feed, found);
     let repaired = repair(tokens, opener, feed, found);
     let mut build = Build::new(tokens, fragment.start, false);
+    build.unbalanced.clone_from(&repaired.brackets);
     let kind = match run(&mut build, &repaired.tokens) {
         Ok(kind) => kind,
         Err(error) => {
             if !build.has_too_many_errors() {
                 build.errors.push(error);
             }
-            UnitKind::Error
+            build.lost_names = true;
+            damaged_unit(&mut build, opener, feed)
         }
     };
     let explain = Explain {
@@ -109,7 +115,14 @@ fn parse(
     Read {
         kind,
         arena: build.arena,
-        lost: build.lost,
+        lost_names: build.lost_names || repaired.unsorted,
+    }
+}
+
+fn damaged_unit(build: &mut Build<'_, '_>, opener: Kind, feed: &Feed) -> UnitKind {
+    match feed.tokens[..] {
+        [(start, ..), .., (.., end)] => build.damaged_unit(opener, start, end),
+        _ => UnitKind::Error,
     }
 }
 

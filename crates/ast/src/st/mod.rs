@@ -143,8 +143,8 @@ pub struct Unit {
     pub pragmas: Vec<Pragma>,
     /// Whether a message with an error was given for it.
     pub has_errors: bool,
-    /// Names in declarations that could not be read.
-    pub lost: Vec<Symbol>,
+    /// Whether names that it declares, or what they are to others, were lost in a mistake.
+    pub lost_names: bool,
 }
 
 /// What a unit is.

@@ -120,6 +120,10 @@ pub(crate) struct Analysis<'a> {
     pub suggestions: std::cell::Cell<u32>,
     /// What is given only where there are no errors.
     pub warnings: Vec<Diagnostic>,
+    /// Whether types may have more members or values than are known.
+    pub lost_members: bool,
+    /// Whether units were found that no name is known of.
+    pub lost_units: bool,
     /// How deep declarations are being resolved.
     pub depth: u32,
     /// How many declarations of types are being resolved.
@@ -164,6 +168,34 @@ impl<'a> Analysis<'a> {
     /// A name as the user spells it.
     pub(crate) fn text(&self, name: Symbol) -> &'a str {
         self.names.text(name)
+    }
+
+    /// Whether a name is that of nothing: a message says that one is missing.
+    pub(crate) fn is_missing(&self, name: Symbol) -> bool {
+        self.text(name) == "?"
+    }
+
+    /// Whether a unit, or what it extends, may have more names than are known.
+    pub(crate) fn has_lost_names(&self, pou: PouId) -> bool {
+        let all = self.with_ancestors(pou);
+        all.into_iter()
+            .any(|id| self.unit(self.pou(id).unit).lost_names)
+    }
+
+    /// Whether a structure or instance may have more members than are known.
+    pub(crate) fn may_have_more_members(&self, ty: TypeId) -> bool {
+        match self.types.object(ty) {
+            Some(of) => self.has_lost_names(of),
+            None => self.lost_members,
+        }
+    }
+
+    /// Whether a message was given for the declaration of what a name leads to.
+    pub(crate) fn is_damaged(&mut self, def: Def) -> bool {
+        match def {
+            Def::Type(id) => self.declared_type(id) == TypeId::ERROR,
+            Def::Pou(_) | Def::Global(_) | Def::Namespace(_) => false,
+        }
     }
 
     /// A unit with a signature.

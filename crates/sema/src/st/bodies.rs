@@ -38,7 +38,7 @@ impl Analysis<'_> {
         self.check_bodies(&mut earlier);
         self.show_results();
         let suite = self.suite();
-        diagnostics.append(self.found);
+        diagnostics.append(self.take_found());
         (self.hir, suite)
     }
 
@@ -47,7 +47,7 @@ impl Analysis<'_> {
         let mut earlier = std::mem::take(kept).for_text(&self);
         let notes = self.check_bodies(&mut earlier);
         *kept = earlier.next(&self, notes);
-        diagnostics.append(self.found);
+        diagnostics.append(self.take_found());
     }
 
     fn check_bodies(&mut self, earlier: &mut Earlier) -> Notes {

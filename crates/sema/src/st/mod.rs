@@ -30,6 +30,7 @@ mod memory;
 mod objects;
 mod program;
 mod recheck;
+mod repeats;
 mod resolve;
 pub mod signature;
 mod signatures;
@@ -261,6 +262,8 @@ impl<'a> Analysis<'a> {
             found: Diagnostics::new(),
             suggestions: std::cell::Cell::new(0),
             warnings: Vec::new(),
+            lost_members: false,
+            lost_units: false,
             depth: 0,
             declaring: 0,
             forward: FxHashMap::default(),

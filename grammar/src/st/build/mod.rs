@@ -3,6 +3,7 @@
 //! Nodes are bounded in depth here: a tree that would grow too deep becomes an `Error` node, with
 //! one message per unit.
 
+mod damage;
 mod expr;
 mod literal;
 mod number;
@@ -19,6 +20,7 @@ use iecc_ast::st::{Expr, Ident, ProgramConfig, Resource, Task};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_source::{Span, TextRange};
 use lalrpop_util::{ErrorRecovery, ParseError};
+use std::collections::BTreeSet;
 
 /// Why a parse stops before the end of the unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,11 +47,13 @@ pub(crate) struct Build<'b, 't> {
     pub(crate) diagnostics: Diagnostics,
     /// Mistakes the parser has recovered from.
     pub(crate) errors: Vec<SyntaxError>,
-    /// Names in declarations that could not be read.
-    pub(crate) lost: Vec<Symbol>,
     /// Whether to stop at the first mistake.
     strict: bool,
     too_deep: bool,
+    /// Whether a declaration is damaged so that its names are not known.
+    pub(crate) lost_names: bool,
+    /// Where brackets are that a message was given for.
+    pub(crate) unbalanced: BTreeSet<u32>,
 }
 
 /// What has been read of a unit or method.
@@ -63,6 +67,8 @@ pub(crate) struct Parts {
     body: Vec<Id<Stmt>>,
     /// The first statement that is not empty.
     first_statement: Option<TextRange>,
+    /// Whether a message says that a section stands behind it.
+    disordered: bool,
 }
 
 /// What has been read of a configuration or resource.
@@ -104,9 +110,10 @@ impl<'b, 't> Build<'b, 't> {
             arena: Arena::new(),
             diagnostics: Diagnostics::new(),
             errors: Vec::new(),
-            lost: Vec::new(),
             strict,
             too_deep: false,
+            lost_names: false,
+            unbalanced: BTreeSet::new(),
         }
     }
 
@@ -131,6 +138,12 @@ impl<'b, 't> Build<'b, 't> {
         self.diagnostics.push(diagnostic);
     }
 
+    /// Whether a bracket between two bytes was put in or left out: what stands there may not be what
+    /// was meant.
+    fn is_unbalanced(&self, start: u32, end: u32) -> bool {
+        self.unbalanced.range(start..end).next().is_some()
+    }
+
     /// Notes a mistake that the parser recovers from; stops a strict parse.
     pub(crate) fn damaged(
         &mut self,
@@ -143,15 +156,6 @@ impl<'b, 't> Build<'b, 't> {
         }
         self.errors.push(recovery.error);
         Ok(())
-    }
-
-    /// Notes the names in a declaration that could not be read.
-    pub(crate) fn lost(&mut self, start: u32, end: u32) {
-        let list = &self.tokens.list;
-        let first = list.partition_point(|token| token.start < start);
-        let inside = list[first..].iter().take_while(|token| token.end <= end);
-        let words = inside.filter(|token| token.kind == Kind::Word);
-        self.lost.extend(words.map(|token| token.symbol));
     }
 
     /// Whether so much is wrong that more messages are of no use.

@@ -41,7 +41,9 @@ impl Build<'_, '_> {
         value: Id<Expr>,
         end: u32,
     ) -> Id<Stmt> {
-        let kind = if self.is_path(target) {
+        let kind = if self.is_unbalanced(start, end) {
+            StmtKind::Error
+        } else if self.is_path(target) {
             StmtKind::Assign { target, op, value }
         } else {
             self.no_target(target);
@@ -108,13 +110,23 @@ impl Build<'_, '_> {
     }
 
     /// `inst(…);`, or an expression that does nothing.
+    /// A condition, or a selector.
+    pub(crate) fn condition(&mut self, start: u32, expr: Id<Expr>, end: u32) -> Id<Expr> {
+        if self.is_unbalanced(start, end) {
+            return self.expr(start, ExprKind::Error, end);
+        }
+        expr
+    }
+
     pub(crate) fn expression_statement(
         &mut self,
         start: u32,
         expr: Id<Expr>,
         end: u32,
     ) -> Id<Stmt> {
-        let kind = if self.is_path(expr) {
+        let kind = if self.is_unbalanced(start, end) {
+            StmtKind::Error
+        } else if self.is_path(expr) {
             StmtKind::Call(expr)
         } else {
             self.value_as_statement(expr);

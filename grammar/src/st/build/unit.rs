@@ -48,6 +48,10 @@ impl Build<'_, '_> {
                 parts.sections.push(section);
                 return parts;
             }
+            if std::mem::replace(&mut parts.disordered, true) {
+                parts.sections.push(section);
+                return parts;
+            }
             let span = self.span(start, end);
             let message = format!("{word} stands behind statements");
             let diagnostic = Diagnostic::new(Code::E0027, span, message)

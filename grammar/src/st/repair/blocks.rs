@@ -214,6 +214,7 @@ impl Repair<'_, '_> {
     /// Acts on a semicolon or a word that opens, divides or closes a block.
     pub(super) fn structure(&mut self, token: Located) {
         let kind = token.1.kind;
+        self.unbalanced = None;
         if kind == Kind::Semicolon {
             self.push(token);
             self.pending = false;

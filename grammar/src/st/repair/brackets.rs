@@ -26,7 +26,8 @@ impl Repair<'_, '_> {
                 format!("expected `{sign}` before this"),
             )
             .fix(format!("put in `{sign}`"), self.span(end, end), sign);
-        self.tell(diagnostic);
+        self.told.insert(end);
+        self.unbalanced(diagnostic);
         self.put(kind);
     }
 
@@ -52,7 +53,15 @@ impl Repair<'_, '_> {
         let diagnostic = Diagnostic::new(Code::E0025, span, format!("`{text}` closes no bracket"))
             .label("nothing is open here that it could close")
             .fix(format!("take out the `{text}`"), span, "");
-        self.report(diagnostic);
+        self.unbalanced(diagnostic);
+    }
+
+    /// Reports the first bracket of a statement or declaration: others follow from it.
+    fn unbalanced(&mut self, diagnostic: Diagnostic) {
+        let first = self.unbalanced.replace(self.begin) != Some(self.begin);
+        if first {
+            self.report(diagnostic);
+        }
     }
 
     /// Whether a new statement begins here although a bracket is open: on a new line, with `:=` or

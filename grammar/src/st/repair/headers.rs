@@ -60,6 +60,9 @@ impl Repair<'_, '_> {
             self.note_header(kind);
             return true;
         }
+        if self.lacks_colon(at, block, last) {
+            return true;
+        }
         let begins = self.on_new_line(at) || self.looks_like_statement(at);
         let ends = accessor
             || begins && last.ends_operand()
@@ -71,6 +74,25 @@ impl Repair<'_, '_> {
         }
         self.finish_header(at, block, last);
         true
+    }
+
+    /// Puts in the colon before the type of a result.
+    fn lacks_colon(&mut self, at: usize, block: Block, last: Kind) -> bool {
+        let may_have_type = matches!(block.kind(), Kind::Function | Kind::Method | Kind::Property);
+        let token = self.feed.tokens[at];
+        let lacks = may_have_type
+            && !block.has_colon
+            && !block.skips
+            && last == Kind::Word
+            && begins_type(token.1.kind)
+            && !self.on_new_line(at)
+            && !matches!(self.next_kind(at), None | Some(Kind::Assign | Kind::Colon));
+        if lacks {
+            self.wrong_in_header(at, "expected `:`");
+            self.put_told(Kind::Colon);
+            self.note_header(Kind::Colon);
+        }
+        lacks
     }
 
     fn note_header(&mut self, kind: Kind) {

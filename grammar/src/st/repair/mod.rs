@@ -10,12 +10,14 @@
 //! programs are indented as they are meant.
 
 mod blocks;
+mod bodies;
 mod brackets;
 mod closers;
 mod headers;
 mod names;
 mod report;
 mod separators;
+mod spelling;
 
 use super::build::SyntaxError;
 use super::feed::{Feed, Located};
@@ -28,13 +30,17 @@ use iecc_source::Span;
 use lalrpop_util::ParseError;
 use std::collections::BTreeSet;
 
+pub(crate) use spelling::{is_misspelt_closer, misspelt_unit};
+
 /// The tokens of a mended unit.
 pub(crate) struct Repaired {
     pub(crate) tokens: Vec<Located>,
+    /// Whether a name is missing, or the section that names belong to.
+    pub(crate) unsorted: bool,
     /// Where tokens were put in that a message tells of.
     told: BTreeSet<u32>,
     /// Where brackets are that a message tells of.
-    brackets: BTreeSet<u32>,
+    pub(crate) brackets: BTreeSet<u32>,
 }
 
 impl Repaired {
@@ -91,6 +97,7 @@ pub(crate) fn repair(
     found.append(mended.diagnostics);
     Repaired {
         tokens: mended.out,
+        unsorted: mended.unsorted,
         told: mended.told,
         brackets,
     }
@@ -129,6 +136,14 @@ struct Repair<'r, 't> {
     skips_value: bool,
     /// Reserved words that a message calls wrong names.
     misnamed: BTreeSet<Symbol>,
+    /// Whether the body is in another language, and left out.
+    foreign: bool,
+    /// Where the statement or declaration begins in `out` for which a bracket was reported.
+    unbalanced: Option<usize>,
+    /// A token that a message has been given for, which is left out.
+    dropped: Option<usize>,
+    /// Whether a name is missing, or the section that names belong to.
+    unsorted: bool,
 }
 
 impl<'r, 't> Repair<'r, 't> {
@@ -147,6 +162,10 @@ impl<'r, 't> Repair<'r, 't> {
             name_due: false,
             skips_value: false,
             misnamed: BTreeSet::new(),
+            foreign: false,
+            unbalanced: None,
+            dropped: None,
+            unsorted: false,
         };
         repair.open_unit(opener);
         let mut at = 1;
@@ -167,7 +186,11 @@ impl<'r, 't> Repair<'r, 't> {
     }
 
     fn open_unit(&mut self, opener: Kind) {
-        let first = self.feed.tokens[0];
+        let mut first = self.feed.tokens[0];
+        if first.1.kind == Kind::Word {
+            self.misspelt_opener_of_unit(first, opener);
+            first.1.kind = opener;
+        }
         self.out.push(first);
         self.name_due = names::needs_name(opener);
         if opener != Kind::Using {
@@ -178,6 +201,12 @@ impl<'r, 't> Repair<'r, 't> {
     /// Takes the next token: first mends what is missing before it.
     fn take(&mut self, at: usize) {
         let (start, mut token, end) = self.feed.tokens[at];
+        if self.dropped == Some(at) || self.is_foreign(at) {
+            return;
+        }
+        if let Some(kind) = self.corrected(at) {
+            token.kind = kind;
+        }
         if self.is_misnamed(at) {
             token.kind = Kind::Word;
         }

@@ -1,6 +1,6 @@
 //! Names that are missing, and reserved words in the place of names.
 
-use super::blocks::{Context, is_closer, is_pou, opens_statement};
+use super::blocks::{Context, divides, is_closer, is_pou, opens_statement};
 use super::{Kind, Repair, Token};
 use iecc_diag::{Code, Diagnostic};
 
@@ -22,7 +22,7 @@ impl Repair<'_, '_> {
             return true;
         }
         let keyword = kind.keyword().is_some() && self.brackets.is_empty();
-        if !keyword || !self.stands_for_name(at, kind) {
+        if !is_of_chart(kind) && !(keyword && self.stands_for_name(at, kind)) {
             return false;
         }
         if self.misnamed.insert(token.1.symbol) {
@@ -60,8 +60,7 @@ impl Repair<'_, '_> {
             }
             Context::Types => begins && next == Some(Kind::Colon),
             Context::Statements => {
-                let assigned =
-                    !self.pending && next == Some(Kind::Assign) && !opens_statement(kind);
+                let assigned = !self.pending && next == Some(Kind::Assign) && !is_structure(kind);
                 !self.in_header() && (assigned || is_never_in_statement(kind))
             }
             Context::Configuration | Context::Accessors => false,
@@ -113,16 +112,26 @@ impl Repair<'_, '_> {
             .label("expected a name behind this");
         self.told.insert(end);
         self.report(diagnostic);
+        self.unsorted = true;
         self.put(Kind::Word);
     }
 }
 
+/// Whether a word divides or bounds statements.
+fn is_structure(kind: Kind) -> bool {
+    opens_statement(kind) || divides(kind) || is_closer(kind)
+}
+
+/// The words of Sequential Function Chart: where the body is none, they are meant as names.
+fn is_of_chart(kind: Kind) -> bool {
+    (Kind::Step..=Kind::From).contains(&kind)
+}
+
 /// Keywords that no statement has, and that open nothing among statements.
 fn is_never_in_statement(kind: Kind) -> bool {
-    let chart = (Kind::Step..=Kind::From).contains(&kind);
     let configuration = (Kind::Configuration..=Kind::ReadWrite).contains(&kind);
     let unit = is_pou(kind) || matches!(kind, Kind::Extends | Kind::Implements | Kind::Type);
     let declaration = matches!(kind, Kind::At | Kind::REdge | Kind::FEdge);
     let ty = matches!(kind, Kind::Array | Kind::RefTo | Kind::Overlap);
-    (chart || configuration || unit || declaration || ty) && !is_closer(kind)
+    (configuration || unit || declaration || ty) && !is_closer(kind)
 }

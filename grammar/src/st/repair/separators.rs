@@ -45,6 +45,8 @@ impl Repair<'_, '_> {
         }
         let label = word == Kind::Of && may_be_label(kind);
         let begins = is_jump(kind) || (begins_statement(kind) || label) && self.on_new_line(at);
+        // No operand stands behind another.
+        let begins = begins || kind == Kind::Word && self.looks_like_statement(at);
         let next_line = begins && self.last_kind().is_some_and(Kind::ends_operand);
         if !next_line && !self.is_structural(kind) {
             return true;
@@ -211,6 +213,7 @@ impl Repair<'_, '_> {
         let diagnostic = Diagnostic::new(Code::E0033, self.span_of(token), message)
             .label("expected VAR, VAR_INPUT or the like before this");
         self.tell(diagnostic);
+        self.unsorted = true;
         self.put(Kind::Var);
         if let Some(&opener) = self.out.last() {
             let mut block = Block::new(opener);
@@ -235,7 +238,7 @@ impl Repair<'_, '_> {
             .blocks
             .last()
             .is_some_and(|block| matches!(block.kind(), Kind::Struct | Kind::Union));
-        if structure && !self.pending && kind == Kind::Semicolon {
+        if structure && !self.pending && kind == Kind::Semicolon && self.on_new_line(at) {
             let inner = self.blocks.len() - 1;
             self.close_above(inner, self.feed.tokens[at]);
         }

@@ -268,7 +268,7 @@ impl Body<'_, '_> {
                 )
             }
         };
-        if !allowed {
+        if !allowed && !self.an.has_lost_names(of) {
             let text = self.text(name);
             let message = format!("`{text}` is {}: only {who} can use it", access.as_str());
             let diagnostic = Diagnostic::new(Message::E1015, self.span(range), message);
@@ -340,6 +340,9 @@ impl Body<'_, '_> {
     }
 
     fn no_method(&mut self, of: PouId, name: st::Ident) {
+        if self.an.has_lost_names(of) {
+            return;
+        }
         let text = self.text(name.name);
         let message = format!("{} has no method `{text}`", self.text(self.an.pou(of).name));
         let mut diagnostic = Diagnostic::new(Message::E1018, self.span(name.range), message);

@@ -94,6 +94,7 @@ impl<'a> Analysis<'a> {
         self.units.push(UnitRef { unit, namespace });
         match &unit.kind {
             UnitKind::Types { modifiers, types } => {
+                self.lost_members |= unit.lost_names;
                 let internal = is_internal(&unit.arena[*modifiers]);
                 for decl in &unit.arena[*types] {
                     let def = Def::Type(TypeDeclId(self.type_decls.len() as u32));
@@ -127,7 +128,8 @@ impl<'a> Analysis<'a> {
             }
             UnitKind::Test(_) => self.note_test(id),
             UnitKind::Globals(_) => self.lists.push((id, list)),
-            UnitKind::Using(_) | UnitKind::Nothing | UnitKind::Error => {}
+            UnitKind::Error => self.lost_units = true,
+            UnitKind::Using(_) | UnitKind::Nothing => {}
         }
     }
 
@@ -242,10 +244,14 @@ impl<'a> Analysis<'a> {
 
     /// Gives a name a meaning, which it may have once; library functions may be overloaded.
     pub(crate) fn define(&mut self, namespace: NamespaceId, name: Symbol, def: Def, span: Span) {
-        let defs = &mut self.namespaces[namespace.index()].defs;
-        let defs = defs.entry(name).or_default();
-        if let Some(&first) = defs.first()
+        if self.is_missing(name) {
+            self.lost_units = true;
+            return;
+        }
+        let known = self.namespaces[namespace.index()].defs.get(&name);
+        if let Some(&first) = known.and_then(|defs| defs.first())
             && namespace != NamespaceId::LIBRARY
+            && !self.is_of_damaged_unit(first)
         {
             let other = self.def_span(first);
             let message = format!("`{}` is declared twice", self.text(name));
@@ -256,7 +262,16 @@ impl<'a> Analysis<'a> {
             self.report(diagnostic);
             return;
         }
-        defs.push(def);
+        let defs = &mut self.namespaces[namespace.index()].defs;
+        defs.entry(name).or_default().push(def);
+    }
+
+    /// Whether a type stands for something that could not be read.
+    fn is_of_damaged_unit(&self, def: Def) -> bool {
+        match def {
+            Def::Type(id) => self.unit(self.type_decl(id).unit).lost_names,
+            Def::Pou(_) | Def::Global(_) | Def::Namespace(_) => false,
+        }
     }
 
     fn def_span(&self, def: Def) -> Option<Span> {

@@ -122,11 +122,13 @@ impl Analysis<'_> {
                 None
             }
             (TypeKind::Struct(index), ExprKind::StructValue(arguments)) => {
-                self.struct_value(scope, arguments, index)
+                self.struct_value(scope, arguments, index, ty)
             }
             (TypeKind::Instance(pou), ExprKind::StructValue(arguments)) => {
                 self.instance_value(scope, arguments, pou)
             }
+            // A message has been given.
+            (_, ExprKind::Error) => None,
             (TypeKind::Array { .. } | TypeKind::Struct(_) | TypeKind::Instance(_), _) => {
                 let span = self.span(scope.unit, written.range);
                 let name = self.type_name(ty);
@@ -158,6 +160,7 @@ impl Analysis<'_> {
         scope: TypeScope<'_>,
         arguments: st::List<st::Argument>,
         index: u32,
+        ty: TypeId,
     ) -> Option<InitId> {
         let def = self.types.structs[index as usize].clone();
         let mut given: Vec<Option<st::Id<st::Expr>>> = vec![None; def.members.len()];
@@ -170,7 +173,7 @@ impl Analysis<'_> {
                 Some(&position) => given[position as usize] = argument.value,
                 None => {
                     let candidates = def.members.iter().map(|m| m.name);
-                    self.no_such_member(scope, name, candidates.collect());
+                    self.no_such_member(scope, ty, name, candidates.collect());
                 }
             }
         }
@@ -189,11 +192,16 @@ impl Analysis<'_> {
     pub(crate) fn no_such_member(
         &mut self,
         scope: TypeScope<'_>,
+        of: TypeId,
         name: st::Ident,
         candidates: Vec<iecc_ast::Symbol>,
     ) {
         let span = self.span(scope.unit, name.range);
-        let message = format!("there is no member `{}`", self.text(name.name));
+        if self.may_have_more_members(of) {
+            return;
+        }
+        let (owner, text) = (self.type_name(of), self.text(name.name));
+        let message = format!("{owner} has no member `{text}`");
         let mut diagnostic = Diagnostic::new(Code::E1002, span, message);
         if let Some(close) = self.similar(name.name, candidates) {
             diagnostic = diagnostic.note(format!("did you mean `{close}`?"));

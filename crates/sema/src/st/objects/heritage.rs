@@ -104,6 +104,7 @@ impl Analysis<'_> {
             }
             match self.found(unit_id, namespace, path).as_deref() {
                 Some([Def::Pou(base), ..]) => found.push((*base, span)),
+                Some([]) if self.lost_units => {}
                 Some([]) => {
                     self.error(
                         Code::E1010,
@@ -111,6 +112,7 @@ impl Analysis<'_> {
                         "no class, block or interface has this name",
                     );
                 }
+                Some(&[def, ..]) if self.is_damaged(def) => {}
                 Some([Def::Type(_) | Def::Global(_) | Def::Namespace(_), ..]) => {
                     let message = format!("{word} names a class, block or interface");
                     self.error(Code::E1041, span, message);

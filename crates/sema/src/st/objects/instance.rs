@@ -105,7 +105,8 @@ impl Analysis<'_> {
                     let lineage = self.lineage(pou);
                     let vars = lineage.iter().flat_map(|id| self.pou(*id).vars.iter());
                     let candidates = vars.map(|var| var.name).collect();
-                    self.no_such_member(scope, name, candidates);
+                    let ty = self.types.intern(TypeKind::Instance(pou));
+                    self.no_such_member(scope, ty, name, candidates);
                 }
             }
         }

@@ -279,6 +279,9 @@ impl Analysis<'_> {
             self.error(Code::E1010, span, "this path leads to no type");
             return;
         };
+        if self.is_missing(name) || self.lost_units {
+            return;
+        }
         if name == self.words.bit && !self.options.codesys {
             self.foreign(scope.unit, written.range, "BIT");
             return;
@@ -347,9 +350,12 @@ impl Analysis<'_> {
     ) -> TypeId {
         let arena = &self.unit(scope.unit).arena;
         let (base_range, range) = (arena[base].range, arena[low].range.to(arena[high].range));
-        let Some(el) = self.elementary_path(scope, base).filter(|el| el.is_int()) else {
+        let ty = self.type_by_path(scope, base);
+        let Some(el) = self.types.elementary(ty).filter(|el| el.is_int()) else {
             let span = self.span(scope.unit, base_range);
-            self.error(Code::E2022, span, "a subrange is of an integer type");
+            if ty != TypeId::ERROR {
+                self.error(Code::E2022, span, "a subrange is of an integer type");
+            }
             return TypeId::ERROR;
         };
         let ty = TypeId::of(el);

@@ -82,7 +82,7 @@ impl Body<'_, '_> {
             let message = "arguments are given either all by name or all by position";
             self.error(Message::E3017, range, message);
         }
-        if positional > parameters.len() {
+        if positional > parameters.len() && !self.an.has_lost_names(pou) {
             let message = format!(
                 "{positional} arguments are given but `{}` has {} parameters",
                 self.text(self.an.pou(pou).name),
@@ -156,7 +156,7 @@ impl Body<'_, '_> {
             .filter(|var| var.section != SectionKind::Output)
             .map(|var| self.text(var.name))
             .collect();
-        if missing.is_empty() || self.an.options.codesys {
+        if missing.is_empty() || self.an.options.codesys || self.an.has_lost_names(pou) {
             return;
         }
         let name = self.text(self.an.pou(pou).name);
@@ -192,6 +192,9 @@ impl Body<'_, '_> {
         name: st::Ident,
         known: impl IntoIterator<Item = Symbol>,
     ) {
+        if self.an.has_lost_names(pou) {
+            return;
+        }
         let callee = self.text(self.an.pou(pou).name);
         let message = format!("`{callee}` has no parameter `{}`", self.text(name.name));
         let mut diagnostic = Diagnostic::new(Message::E1019, self.span(name.range), message);

@@ -268,6 +268,8 @@ impl Body<'_, '_> {
                 Some(Def::Pou(pou)) if self.an.pou(*pou).kind == PouKind::Program => {
                     return self.instance_callee(id);
                 }
+                Some(_) if self.an.unit(self.unit).lost_names => {}
+                Some(&def) if self.an.is_damaged(def) => {}
                 Some(&def) => self.no_function(def, name, range),
             }
             None
@@ -296,6 +298,9 @@ impl Body<'_, '_> {
             } else {
                 self.outside_of_test(what, range);
             }
+            return;
+        }
+        if self.an.lost_units || self.an.unit(self.unit).lost_names {
             return;
         }
         let message = format!("no function or instance is named `{}`", self.text(name));
@@ -344,7 +349,8 @@ impl Body<'_, '_> {
                 return self.instance_callee(id);
             }
             let found = self.functions_of(&defs);
-            if found.is_none() {
+            let damaged = defs.first().is_some_and(|&def| self.an.is_damaged(def));
+            if found.is_none() && !damaged {
                 let message = format!("the namespace has no function `{}`", self.text(member.name));
                 self.error(Message::E1018, member.range, message);
             }

@@ -13,7 +13,7 @@ impl Body<'_, '_> {
         if let Some(operand) = self.find_enumerator(ty, name, range) {
             return operand;
         }
-        if ty == TypeId::ERROR {
+        if ty == TypeId::ERROR || self.an.lost_members {
             return Operand::error(range);
         }
         let type_name = self.type_name(ty);

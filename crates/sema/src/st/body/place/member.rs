@@ -73,6 +73,9 @@ impl Body<'_, '_> {
         member: st::Ident,
         candidates: Vec<Symbol>,
     ) -> Operand {
+        if self.an.may_have_more_members(ty) {
+            return Operand::error(member.range);
+        }
         let name = self.text(member.name);
         let message = format!("{} has no member `{name}`", self.type_name(ty));
         let mut diagnostic = Diagnostic::new(Message::E1002, self.span(member.range), message);
@@ -116,6 +119,7 @@ impl Body<'_, '_> {
                     Some(Def::Pou(pou)) if self.an.pou(pou).kind == PouKind::Program => {
                         self.program(pou, range)
                     }
+                    Some(def) if self.an.is_damaged(def) => Operand::error(range),
                     Some(_) => {
                         let message = format!("`{}` is no variable", self.text(member.name));
                         self.error(Message::E1012, range, message)

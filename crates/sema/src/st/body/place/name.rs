@@ -54,6 +54,10 @@ impl Body<'_, '_> {
         let def = defs.first().copied();
         let text = self.text(name);
         match def {
+            Some(def) if self.an.is_damaged(def) => Operand::error(range),
+            Some(Def::Pou(_) | Def::Type(_)) if self.an.unit(self.unit).lost_names => {
+                Operand::error(range)
+            }
             Some(Def::Global(id)) => self.global(id, name, range),
             Some(Def::Pou(pou)) if self.an.pou(pou).kind == PouKind::Program => {
                 self.program(pou, range)
@@ -71,7 +75,7 @@ impl Body<'_, '_> {
     }
 
     fn unknown_name(&mut self, name: Symbol, range: TextRange) -> Operand {
-        if self.an.unit(self.unit).lost.contains(&name) {
+        if self.an.is_missing(name) || self.an.unit(self.unit).lost_names {
             return Operand::error(range);
         }
         let message = format!("no variable is named `{}`", self.text(name));
