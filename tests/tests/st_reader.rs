@@ -67,6 +67,8 @@ fn each_example_of_a_text_code_gives_that_code_alone() {
     }
     let all = Code::ALL
         .iter()
-        .filter(|code| (Code::E0010..=Code::E0034).contains(code));
+        .filter(|code| (Code::E0010..=Code::E0037).contains(code))
+        // That depends on the dialect.
+        .filter(|code| **code != Code::E0035);
     assert_eq!(shown, all.copied().collect(), "every code has an example");
 }

@@ -65,6 +65,22 @@ fn every_prefix_of_a_text_is_refused_without_panic() {
     }
 }
 
+/// Initial values have places in the state.
+#[test]
+fn initial_values_outside_of_their_array_are_refused() {
+    let text = |index: u32| {
+        format!(
+            "module m\nstate {{ a: [2 x i8] }}\ninput {{}}\noutput {{}}\ninit a[{index}] = 5\nscan @s\n\
+             fn @s[]() -> () {{\nb0:\n  return\n}}\n"
+        )
+    };
+    assert!(parse_module(&text(1)).is_ok());
+    let Err(error) = parse_module(&text(2)) else {
+        panic!("the array has two elements");
+    };
+    assert!(error.to_string().contains("below the lengths"), "{error}");
+}
+
 /// A scan function body around the given lines; the module has a state `n: i32`, `b: i1`, an array
 /// `a: [2 x i8]`, an input `x: i1` and an output `y: i1`.
 fn broken_rules(body: &str) -> Vec<u8> {

@@ -118,6 +118,17 @@ pub enum ExprKind {
 }
 
 impl ExprKind {
+    /// A name, or the last name of a path.
+    pub fn last_name(&self) -> Option<Symbol> {
+        if let Self::Member { member, .. } = self {
+            Some(member.name)
+        } else if let Self::Name(name) = self {
+            Some(*name)
+        } else {
+            None
+        }
+    }
+
     /// The name, where it is nothing else.
     pub fn name(self) -> Option<Symbol> {
         if let Self::Name(name) = self {

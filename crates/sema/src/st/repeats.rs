@@ -11,18 +11,19 @@ const MOST_PLACES: usize = 3;
 
 /// Whether a message is about a name, so that the same words mean the same mistake.
 fn is_about_name(diagnostic: &Diagnostic) -> bool {
-    let named = diagnostic.message.starts_with('`');
-    match diagnostic.code {
+    let message = &diagnostic.message;
+    let code = diagnostic.code;
+    let about = matches!(
+        code,
         Code::E1002
-        | Code::E1010
-        | Code::E1012
-        | Code::E1013
-        | Code::E1016
-        | Code::E1018
-        | Code::E1019 => true,
-        Code::E3004 => named,
-        _ => false,
-    }
+            | Code::E1010
+            | Code::E1012
+            | Code::E1013
+            | Code::E1016
+            | Code::E1018
+            | Code::E1019
+    );
+    about && message.contains('`') || code == Code::E3004 && message.starts_with('`')
 }
 
 /// The units of all files, by where they begin.

@@ -487,7 +487,33 @@ impl Parser {
     // ---- places ----
 
     fn static_path(&mut self, start: MemType, bare: bool) -> Result<(Vec<Projection>, MemType)> {
-        self.path(start, bare, &mut |p| p.fail("a constant index"))
+        let at = self.next;
+        let found = self.path(start, bare, &mut |p| p.fail("a constant index"))?;
+        if !self.is_within(start, &found.0) {
+            self.next = at;
+            return self.fail("a path with indices below the lengths of its arrays");
+        }
+        Ok(found)
+    }
+
+    /// Whether constant indices lie within their arrays. Those of code are for the verifier.
+    fn is_within(&self, start: MemType, path: &[Projection]) -> bool {
+        let mut at = start;
+        path.iter().all(|step| match (at, step) {
+            (MemType::Array(id), Projection::Index(index)) => {
+                let array = self.types.array_type(id);
+                at = array.element;
+                matches!(index, Index::Const(index) if *index < array.len)
+            }
+            (MemType::Struct(id), Projection::Field(field)) => {
+                at = self.types.structs[id].fields[*field as usize].ty;
+                true
+            }
+            (
+                MemType::Scalar(_) | MemType::Struct(_) | MemType::Array(_),
+                Projection::Bit(_) | Projection::Field(_) | Projection::Index(_),
+            ) => true,
+        })
     }
 
     /// Projections from `start`; a `bare` path begins with a field name without its dot. Also

@@ -106,11 +106,10 @@ impl Analysis<'_> {
                 Some([Def::Pou(base), ..]) => found.push((*base, span)),
                 Some([]) if self.lost_units => {}
                 Some([]) => {
-                    self.error(
-                        Code::E1010,
-                        span,
-                        "no class, block or interface has this name",
-                    );
+                    let name = unit.arena[path].kind.last_name();
+                    let name = name.map_or("?", |name| self.text(name));
+                    let message = format!("no class, block or interface is named `{name}`");
+                    self.error(Code::E1010, span, message);
                 }
                 Some(&[def, ..]) if self.is_damaged(def) => {}
                 Some([Def::Type(_) | Def::Global(_) | Def::Namespace(_), ..]) => {

@@ -4,7 +4,7 @@ use crate::hir::{InitId, code::Init};
 use crate::st::analysis::Analysis;
 use crate::st::resolve::TypeScope;
 use crate::st::signature::{PouId, Storage, Var};
-use crate::st::types::{Parts, TypeId};
+use crate::st::types::{Parts, TypeId, TypeKind};
 use iecc_ast::Symbol;
 use iecc_ast::st::{self, ArgumentKind, ModifierKind, SectionKind};
 use iecc_diag::{Code, Diagnostic};
