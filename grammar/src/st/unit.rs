@@ -11,7 +11,6 @@ use super::repair::repair;
 use super::slice::{Fragment, FragmentKind};
 use super::token::Kind;
 use crate::generated::st::UnitParser;
-use iecc_ast::Symbol;
 use iecc_ast::st::{Arena, ScopeId, Unit, UnitKind};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
 use iecc_source::Span;

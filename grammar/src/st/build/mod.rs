@@ -13,8 +13,7 @@ mod types;
 mod unit;
 
 use super::Tokens;
-use super::token::{Kind, Token};
-use iecc_ast::Symbol;
+use super::token::Token;
 use iecc_ast::st::{Arena, Id, Label, Member, Stmt, VarSection};
 use iecc_ast::st::{Expr, Ident, ProgramConfig, Resource, Task};
 use iecc_diag::{Code, Diagnostic, Diagnostics};
