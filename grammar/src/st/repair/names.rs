@@ -22,7 +22,8 @@ impl Repair<'_, '_> {
             return true;
         }
         let keyword = kind.keyword().is_some() && self.brackets.is_empty();
-        if !is_of_chart(kind) && !(keyword && self.stands_for_name(at, kind)) {
+        let stands = is_of_chart(kind) || keyword && self.stands_for_name(at, kind);
+        if !stands {
             return false;
         }
         if self.misnamed.insert(token.1.symbol) {
