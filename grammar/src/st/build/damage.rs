@@ -103,13 +103,11 @@ impl<'b, 't> Build<'b, 't> {
             names.extend(listed.map(|(_, &token)| self.ident(token)));
         }
         if names.is_empty() {
-            let words = tokens.iter().enumerate();
-            let words = words.take_while(|(at, token)| match at % 2 {
-                0 => is_word(token.kind),
-                _ => token.kind == Kind::Comma,
-            });
-            let words = words.filter(|(_, token)| is_word(token.kind));
-            names.extend(words.map(|(_, &token)| self.ident(token)));
+            let words = tokens
+                .iter()
+                .take_while(|token| is_word(token.kind) || token.kind == Kind::Comma);
+            let words = words.filter(|token| is_word(token.kind));
+            names.extend(words.map(|&token| self.ident(token)));
         }
         let mut known = BTreeSet::new();
         names.retain(|name| known.insert(name.name));

@@ -527,7 +527,9 @@ impl Analysis<'_> {
                 if let Some(&first) = by_name.get(&ident.name) {
                     let first: &Member = &made[first as usize];
                     let other = first.span;
-                    self.declared_twice(ident.name, span, other);
+                    if ty != TypeId::ERROR {
+                        self.declared_twice(ident.name, span, other);
+                    }
                     continue;
                 }
                 by_name.insert(ident.name, made.len() as u32);

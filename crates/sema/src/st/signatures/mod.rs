@@ -361,7 +361,10 @@ impl Analysis<'_> {
         let span = self.span(unit, var.range);
         if let Some(first) = self.pou(id).var(var.name) {
             let first = self.span(unit, first.range);
-            self.declared_twice(var.name, span, first);
+            // The names of a damaged declaration are guessed.
+            if var.ty != TypeId::ERROR {
+                self.declared_twice(var.name, span, first);
+            }
             return;
         }
         let pou = &mut self.pous[id.index()];
