@@ -240,7 +240,11 @@ impl Repair<'_, '_> {
             && !self.on_new_line(at)
             && begins_value(next)
             && self.context() != Context::Types;
-        between.then(|| closest_keyword(text, OPERATORS.into_iter()))?
+        // Instructions of Instruction List, which negate as well.
+        let instruction = ["ANDN", "ORN", "XORN"]
+            .iter()
+            .any(|name| name.eq_ignore_ascii_case(text));
+        (between && !instruction).then(|| closest_keyword(text, OPERATORS.into_iter()))?
     }
 
     fn follows_operand(&self) -> bool {
