@@ -18,15 +18,17 @@ mod session;
 mod stimulus;
 #[cfg(test)]
 mod tests;
+mod texts;
 mod time;
 mod trace;
 mod value;
 
 pub use instrument::{Instruments, Poke, Watch, instrument};
 pub use mirror::initial_inputs;
-pub use probe::{Probe, Probes, Shape};
+pub use probe::{Probe, Probes};
 pub use session::{Column, Request, RunError, Session};
 pub use stimulus::Stimulus;
+pub use texts::Shape;
 pub use time::{Schedule, TimeUnit, parse_duration};
 pub(crate) use value::write_value;
 

@@ -2,27 +2,11 @@
 //! before a scan, and what they look at after it. Unlike columns of a trace, a string is one value.
 
 use super::instrument::{Poke, Watch, instrument};
-use super::names::{Names, leaves, type_of, view_of};
+use super::names::{Names, leaves, view_of};
 use super::session::Cell;
+use super::texts::{Shape, shape};
 use iecc_diag::Diagnostic;
-use iecc_ir::{Layout, MemType, Module, Place, PlaceType, Root, Type, View};
-
-/// Members of a string, in their order.
-const STRING_MEMBERS: [&str; 2] = ["LEN", "DATA"];
-
-/// What a place holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
-    /// One value.
-    Scalar(Type),
-    /// A string: its length, then so many characters.
-    Text {
-        /// Type of the characters.
-        character: Type,
-        /// How many it can hold.
-        capacity: usize,
-    },
-}
+use iecc_ir::{Layout, Module, Place, Root, View};
 
 /// A named place.
 #[derive(Debug, Clone)]
@@ -155,33 +139,6 @@ fn find(module: &Module, names: &Names<'_>, path: &str) -> Result<Found, Diagnos
         view: view_of(module, &place),
         root: place.root,
         leaves,
-    })
-}
-
-fn shape(module: &Module, place: &Place) -> Option<Shape> {
-    let ty = type_of(module, place)?;
-    if let Some(scalar) = ty.scalar() {
-        return Some(Shape::Scalar(scalar));
-    }
-    let PlaceType::Mem(MemType::Struct(id)) = ty else {
-        return None;
-    };
-    let fields = &module.types.structs[id].fields;
-    let named = fields
-        .iter()
-        .map(|field| field.name.as_str())
-        .eq(STRING_MEMBERS);
-    let MemType::Array(data) = fields.get(1)?.ty else {
-        return None;
-    };
-    let data = module.types.array_type(data);
-    let MemType::Scalar(character) = data.element else {
-        return None;
-    };
-    let capacity = data.len as usize;
-    named.then_some(Shape::Text {
-        character,
-        capacity,
     })
 }
 

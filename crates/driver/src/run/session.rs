@@ -4,6 +4,7 @@ use super::instrument::{Instruments, Poke, Watch, instrument};
 use super::mirror::initial_inputs;
 use super::names::{Names, leaves, view_of};
 use super::stimulus::{BoundRow, BoundStimulus, Setting, Stimulus};
+use super::texts::characters_behind;
 use super::time::Schedule;
 use super::trace::Trace;
 use iecc_diag::{Code, Diagnostic, Diagnostics};
@@ -26,6 +27,8 @@ pub struct Column {
     pub ty: Type,
     /// How they are shown.
     pub view: View,
+    /// Of the length of a string: how many columns with its characters follow. Else 0.
+    pub characters: usize,
     cell: Cell,
 }
 
@@ -166,10 +169,18 @@ impl Session {
         let hidden = watches.iter().zip(&instruments.watches);
         let hidden = hidden.map(|(watch, output)| (watch.name.clone(), output.clone()));
         let seen = seen.into_iter().map(|watch| (watch.name, watch.place));
-        let seen = seen.filter(|(_, place)| public.iter().all(|(_, known)| known != place));
-        let columns: Vec<(String, Place)> =
-            public.iter().cloned().chain(seen).chain(hidden).collect();
-        Some(Self::new(module, columns, bound, &instruments))
+        let seen: Vec<_> = seen
+            .filter(|(_, place)| public.iter().all(|(_, known)| known != place))
+            .collect();
+        let shown = public.iter().chain(&seen).map(|(_, place)| place.clone());
+        let own = watches.iter().map(|watch| watch.place.clone());
+        let places: Vec<Place> = shown.chain(own).collect();
+        let columns = public.into_iter().chain(seen).chain(hidden).collect();
+        let mut session = Self::new(module, columns, bound, &instruments);
+        for (at, column) in session.columns.iter_mut().enumerate() {
+            column.characters = characters_behind(module, &places[at..]);
+        }
+        Some(session)
     }
 
     fn new(
@@ -192,6 +203,7 @@ impl Session {
                 name,
                 ty,
                 view,
+                characters: 0,
                 cell,
             }
         });

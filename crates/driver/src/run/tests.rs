@@ -335,3 +335,63 @@ fn every_example_of_a_bad_stimulus_gives_its_code() {
     let expected: Vec<Code> = Code::ALL.iter().filter(of_stimuli).copied().collect();
     assert_eq!(seen, expected);
 }
+
+/// `name` of the state is 'it$'s' and then 'i', with what was behind it still there.
+const TEXTS: &str = "module texts
+struct STRING5 { LEN: i16, DATA: [5 x i8] }
+struct WSTRING2 { LEN: i16, DATA: [2 x i16] }
+state { name: STRING5 }
+input { n: i16 }
+output { wide: WSTRING2 }
+init name.DATA[0] = 105
+init name.DATA[1] = 116
+init name.DATA[2] = 39
+init name.DATA[3] = 115
+scan @s
+fn @s[]() -> () {
+b0:
+  v0: i16 = load input.n
+  v5: i16 = const 1
+  v6: i16 = add v0, v5
+  store state.name.LEN, v6
+  v1: i16 = const 2
+  store output.wide.LEN, v1
+  v2: i16 = const 0x20AC
+  store output.wide.DATA[0], v2
+  v3: i16 = const 34
+  store output.wide.DATA[1], v3
+  v4: i8 = const 120
+  store state.name.DATA[4], v4
+  return
+}
+";
+
+#[test]
+fn strings_are_shown_as_literals() {
+    let stimulus = "t_ms,n\n0,3\n20,0\n30,-2\n40,8\n";
+    let prepared = prepare_module(TEXTS, &["name"], stimulus);
+    let expected = "\
+t_ms,n,wide,name
+0,3,\"\"\"\u{20ac}$\"\"\"\"\",'it$'s'
+20,0,\"\"\"\u{20ac}$\"\"\"\"\",'i'
+30,-2,\"\"\"\u{20ac}$\"\"\"\"\",''
+40,8,\"\"\"\u{20ac}$\"\"\"\"\",'it$'sx'
+";
+    for mut engine in engines(&prepared.module) {
+        assert_eq!(csv(&prepared, &mut *engine, ms(10, 5), true), expected);
+    }
+}
+
+/// A length that is watched without its characters is a number.
+#[test]
+fn parts_of_strings_are_numbers() {
+    let prepared = prepare_module(TEXTS, &["name.LEN", "name.DATA[1]"], "t_ms,n\n0,2\n");
+    for mut engine in engines(&prepared.module) {
+        let text = csv(&prepared, &mut *engine, ms(10, 1), false);
+        assert!(
+            text.starts_with("t_ms,n,wide,name.LEN,name.DATA[1]\n"),
+            "{text}"
+        );
+        assert!(text.ends_with(",3,116\n"), "{text}");
+    }
+}

@@ -2,21 +2,19 @@
 //! something.
 
 use super::Trace;
+use super::shown::{Shown, shown};
 use crate::run::Column;
 use crate::run::time::TimeUnit;
-use crate::run::value::write_value;
-use iecc_ir::{Type, View};
 use std::io::{self, Write};
 
 /// Writes CSV.
 pub struct CsvTrace<W: Write> {
     writer: csv::Writer<W>,
-    types: Vec<(Type, View)>,
+    shown: Vec<Shown>,
     unit: TimeUnit,
     changes_only: bool,
-    /// The row before.
-    before: Option<Vec<u64>>,
-    text: String,
+    /// The row before, and what was shown of it.
+    before: Option<(Vec<u64>, Vec<String>)>,
 }
 
 impl<W: Write> CsvTrace<W> {
@@ -26,15 +24,15 @@ impl<W: Write> CsvTrace<W> {
     /// The header cannot be written.
     pub fn new(out: W, columns: &[Column], unit: TimeUnit, changes_only: bool) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
-        let names = columns.iter().map(|column| column.name.as_str());
+        let shown = shown(columns);
+        let names = shown.iter().map(|shown| shown.name.as_str());
         writer.write_record([unit.column()].into_iter().chain(names))?;
         Ok(Self {
             writer,
-            types: columns.iter().map(|c| (c.ty, c.view)).collect(),
+            shown,
             unit,
             changes_only,
             before: None,
-            text: String::new(),
         })
     }
 
@@ -49,21 +47,20 @@ impl<W: Write> CsvTrace<W> {
 
 impl<W: Write> Trace for CsvTrace<W> {
     fn row(&mut self, now_ns: u64, values: &[u64]) -> io::Result<()> {
-        if self.changes_only && self.before.as_deref() == Some(values) {
+        let before = self.before.as_ref();
+        if before.is_some_and(|(before, _)| before == values) {
             return Ok(());
         }
-        self.text.clear();
-        let time = now_ns / self.unit.nanoseconds();
-        write_value(&mut self.text, Type::I64, View::Plain, time);
-        self.writer.write_field(&self.text)?;
-        for (&(ty, view), &bits) in self.types.iter().zip(values) {
-            self.text.clear();
-            write_value(&mut self.text, ty, view, bits);
-            self.writer.write_field(&self.text)?;
+        let shown = self.shown.iter().map(|shown| shown.text(values));
+        let shown: Vec<String> = shown.collect();
+        // Characters behind the end of a string do not show.
+        if before.is_none_or(|(_, before)| *before != shown) {
+            let time = now_ns / self.unit.nanoseconds();
+            self.writer.write_field(time.to_string())?;
+            self.writer.write_record(&shown)?;
         }
-        self.writer.write_record(None::<&[u8]>)?;
         if self.changes_only {
-            self.before = Some(values.to_vec());
+            self.before = Some((values.to_vec(), shown));
         }
         Ok(())
     }

@@ -1,8 +1,8 @@
 //! What the columns held after the last scan, for who only wants to see how a run ended.
 
 use super::Trace;
+use super::shown::shown;
 use crate::run::Column;
-use crate::run::value::write_value;
 use std::io;
 
 /// Keeps the last row.
@@ -14,13 +14,15 @@ pub struct LastRow {
 impl LastRow {
     /// A line `name = value` for each column; nothing before the first scan.
     pub fn text(&self, columns: &[Column]) -> String {
-        let width = columns.iter().map(|column| column.name.chars().count());
+        let Some(values) = &self.values else {
+            return String::new();
+        };
+        let all = shown(columns);
+        let width = all.iter().map(|shown| shown.name.chars().count());
         let width = width.max().unwrap_or(0);
         let mut text = String::new();
-        for (column, &bits) in columns.iter().zip(self.values.iter().flatten()) {
-            text.push_str(&format!("{:width$} = ", column.name));
-            write_value(&mut text, column.ty, column.view, bits);
-            text.push('\n');
+        for shown in &all {
+            text.push_str(&format!("{:width$} = {}\n", shown.name, shown.text(values)));
         }
         text
     }

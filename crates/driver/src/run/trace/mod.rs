@@ -3,6 +3,7 @@
 mod csv;
 mod file;
 mod last;
+mod shown;
 mod vcd;
 
 pub use csv::CsvTrace;
