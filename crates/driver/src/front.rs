@@ -158,7 +158,7 @@ fn check_logix(
     };
     let mut names = Names::new();
     let library = library(map, sources.stdlib(), &mut names);
-    let functions = logix::library_functions();
+    let functions = logix::stdlib_functions();
     let library = st::library(&library, &names, &functions, &Constants);
     Some(logix::analyze(&project, library, &options, found))
 }

@@ -124,10 +124,10 @@ impl Unit<'_, '_> {
             } => self.edge(condition, storage, output, *falling),
             Action::Timer { kind, timer } => self.timer(condition, *kind, timer),
             Action::Counter { kind, counter } => {
-                self.library_call(kind.function(), counter, condition);
+                self.stdlib_call(kind.function(), counter, condition);
             }
             Action::Reset { kind, structure } => {
-                self.library_call(kind.function(), structure, condition);
+                self.stdlib_call(kind.function(), structure, condition);
             }
             Action::Compute(computation) => self.when(condition, |unit| unit.compute(computation)),
             Action::Call {
@@ -203,8 +203,8 @@ impl Unit<'_, '_> {
 
     // ---- library ----
 
-    fn library_call(&mut self, name: &str, structure: &hir::Place, condition: Value) {
-        let func = self.lowering.library_function(name, MILLISECOND_NS);
+    fn stdlib_call(&mut self, name: &str, structure: &hir::Place, condition: Value) {
+        let func = self.lowering.stdlib_function(name, MILLISECOND_NS);
         self.call_library(func, structure, condition);
     }
 
@@ -215,7 +215,7 @@ impl Unit<'_, '_> {
 
     fn timer(&mut self, condition: Value, kind: TimerKind, timer: &hir::Place) {
         let unit_ns = self.lowering.timer_unit_ns(timer);
-        let func = self.lowering.library_function(kind.function(), unit_ns);
+        let func = self.lowering.stdlib_function(kind.function(), unit_ns);
         self.call_library(func, timer, condition);
     }
 

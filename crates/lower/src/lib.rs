@@ -87,7 +87,7 @@ pub fn lower(program: &hir::Program, options: &Options) -> Module {
         status,
         funcs: PrimaryMap::new(),
         origins: PrimaryMap::new(),
-        library: Library::new(program),
+        stdlib: Library::new(program),
         types,
     };
     lowering.declare_units();
@@ -152,7 +152,7 @@ struct Lowering<'p> {
     status: Option<u32>,
     funcs: PrimaryMap<FuncId, Function>,
     origins: PrimaryMap<Origin, OriginData>,
-    library: Library,
+    stdlib: Library,
     types: TypeMap<'p>,
 }
 
@@ -183,8 +183,8 @@ impl Lowering<'_> {
     }
 
     /// A library function, linked on first use.
-    fn library_function(&mut self, name: &str, unit_ns: u64) -> FuncId {
-        self.library
+    fn stdlib_function(&mut self, name: &str, unit_ns: u64) -> FuncId {
+        self.stdlib
             .link(name, unit_ns, &mut self.funcs, &mut self.types)
     }
 

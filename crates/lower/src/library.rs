@@ -19,7 +19,7 @@ pub(crate) struct Library {
 
 impl Library {
     pub(crate) fn new(program: &hir::Program) -> Self {
-        let library = program.library.as_deref();
+        let library = program.stdlib.as_deref();
         Self {
             module: library.map(|library| lower(library, &Options::default())),
             linked: BTreeMap::new(),

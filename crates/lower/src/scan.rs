@@ -112,11 +112,11 @@ fn effects(
                 builder.store(place(target), bit);
             }
             Prescan::Timer(kind) => {
-                let func = lowering.library_function(kind.prescan_function(), MILLISECOND_NS);
+                let func = lowering.stdlib_function(kind.prescan_function(), MILLISECOND_NS);
                 builder.call(func, vec![place(target)], Vec::new(), &[]);
             }
             Prescan::Counter(kind) => {
-                let func = lowering.library_function(kind.prescan_function(), MILLISECOND_NS);
+                let func = lowering.stdlib_function(kind.prescan_function(), MILLISECOND_NS);
                 builder.call(func, vec![place(target)], Vec::new(), &[]);
             }
         }

@@ -18,7 +18,7 @@ impl Generator<'_> {
         let first = if self.rng.one_in(3) {
             0
         } else {
-            self.library_functions
+            self.stdlib_functions
         };
         let functions = self.functions.iter().enumerate().skip(first);
         let fitting: Vec<usize> = functions
@@ -81,7 +81,7 @@ impl Generator<'_> {
     }
 
     fn is_library(&self, callee: &Signature) -> bool {
-        let mut library = self.functions[..self.library_functions].iter();
+        let mut library = self.functions[..self.stdlib_functions].iter();
         library.any(|known| known.name == callee.name)
     }
 

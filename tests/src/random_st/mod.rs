@@ -63,7 +63,7 @@ pub fn random_program(seed: u64, options: Options) -> Draft {
         types,
         units,
         functions: standard_functions(),
-        library_functions: standard_functions().len(),
+        stdlib_functions: standard_functions().len(),
         constants: Vec::new(),
         routes: Vec::new(),
         counters: Vec::new(),
@@ -88,7 +88,7 @@ struct Generator<'r> {
     standard: usize,
     /// Functions, the first ones of the library.
     functions: Vec<Signature>,
-    library_functions: usize,
+    stdlib_functions: usize,
     /// Named constants of the present unit.
     constants: Vec<(String, Type)>,
     // The rest is about the present body.

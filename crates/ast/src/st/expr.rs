@@ -118,21 +118,29 @@ pub enum ExprKind {
 }
 
 impl ExprKind {
-    /// A name, or the last name of a path.
-    pub fn last_name(&self) -> Option<Symbol> {
-        if let Self::Member { member, .. } = self {
-            Some(member.name)
-        } else if let Self::Name(name) = self {
-            Some(*name)
+    /// The name, where it is nothing else.
+    pub fn name(self) -> Option<Symbol> {
+        if let Self::Name(name) = self {
+            Some(name)
         } else {
             None
         }
     }
 
-    /// The name, where it is nothing else.
-    pub fn name(self) -> Option<Symbol> {
-        if let Self::Name(name) = self {
-            Some(name)
+    /// A name, or the last name of a path.
+    pub fn last_name(self) -> Option<Symbol> {
+        if let Self::Member { member, .. } = self {
+            Some(member.name)
+        } else {
+            self.name()
+        }
+    }
+
+    /// What a member, part or subscript is taken of.
+    pub fn base(self) -> Option<Id<Expr>> {
+        if let Self::Member { base, .. } | Self::Part { base, .. } | Self::Index { base, .. } = self
+        {
+            Some(base)
         } else {
             None
         }

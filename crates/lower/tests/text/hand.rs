@@ -25,7 +25,7 @@ pub(crate) fn program() -> Program {
         outputs: Vec::new(),
         names: Vec::new(),
         pous: Vec::new(),
-        library: None,
+        stdlib: None,
         inits: hir::Inits::default(),
         tasks: Vec::new(),
         first_scan: None,

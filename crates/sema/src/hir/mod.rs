@@ -154,7 +154,7 @@ pub struct Program {
     pub pous: Vec<Pou>,
     /// The functions that instructions of ladder stand for, by name, and what these call. They work
     /// on structures that have the names and members of this program's.
-    pub library: Option<Box<Program>>,
+    pub stdlib: Option<Box<Program>>,
     /// Initial values.
     pub inits: Inits,
     /// What runs, in order of declaration; at least one.
@@ -174,7 +174,7 @@ impl Program {
             outputs: Vec::new(),
             names: Vec::new(),
             pous: Vec::new(),
-            library: None,
+            stdlib: None,
             inits: Inits::default(),
             tasks: Vec::new(),
             first_scan: None,

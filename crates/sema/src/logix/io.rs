@@ -62,7 +62,7 @@ impl Analysis<'_> {
             outputs,
             names,
             pous,
-            library: Some(Box::new(library)),
+            stdlib: Some(Box::new(library)),
         }
     }
 

@@ -59,7 +59,7 @@ pub struct Options {
 }
 
 /// The functions of the library that instructions stand for.
-pub fn library_functions() -> Vec<&'static str> {
+pub fn stdlib_functions() -> Vec<&'static str> {
     let timers = TimerKind::ALL.into_iter();
     let timers = timers.flat_map(|kind| [kind.function(), kind.prescan_function()]);
     let counters = CounterKind::ALL.into_iter();
@@ -69,7 +69,7 @@ pub fn library_functions() -> Vec<&'static str> {
 }
 
 /// Decides what a project means. `library` has the functions that instructions stand for, see
-/// [`library_functions`]. The result may be lowered if no error was reported.
+/// [`stdlib_functions`]. The result may be lowered if no error was reported.
 pub fn analyze(
     project: &Project,
     library: hir::Program,

@@ -177,7 +177,7 @@ pub fn library(
     analysis.first_user_unit = analysis.units.len() as u32;
     analysis.index_units();
     for function in functions {
-        for id in analysis.library_functions(function) {
+        for id in analysis.stdlib_functions(function) {
             analysis.want(id);
         }
     }

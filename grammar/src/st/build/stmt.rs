@@ -78,28 +78,8 @@ impl Build<'_, '_> {
     /// Whether an expression is a path rather than something with operators. What it leads to is
     /// not known here.
     fn is_path(&self, expr: Id<Expr>) -> bool {
-        match self.arena[expr].kind {
-            ExprKind::Binary { .. } => false,
-            // A chain that begins with a path is a path or has an operator.
-            ExprKind::Literal(_)
-            | ExprKind::Name(_)
-            | ExprKind::Typed { .. }
-            | ExprKind::Member { .. }
-            | ExprKind::Part { .. }
-            | ExprKind::Index { .. }
-            | ExprKind::Deref(_)
-            | ExprKind::Direct(_)
-            | ExprKind::This
-            | ExprKind::Super
-            | ExprKind::Null
-            | ExprKind::Ref(_)
-            | ExprKind::Call { .. }
-            | ExprKind::Unary { .. }
-            | ExprKind::ArrayValue(_)
-            | ExprKind::Repeat { .. }
-            | ExprKind::StructValue(_)
-            | ExprKind::Error => true,
-        }
+        // A chain that begins with a path is a path or has an operator.
+        !matches!(self.arena[expr].kind, ExprKind::Binary { .. })
     }
 
     fn no_target(&mut self, target: Id<Expr>) {

@@ -90,8 +90,8 @@ impl Body<'_, '_> {
         let Some(&first) = functions.first() else {
             return false;
         };
-        let parameters = self.an.library_parameters(first);
-        let result = self.an.library_generic_result(first);
+        let parameters = self.an.stdlib_parameters(first);
+        let result = self.an.stdlib_generic_result(first);
         if result.is_none() && functions.len() == 1 {
             return false;
         }
@@ -171,21 +171,20 @@ impl Body<'_, '_> {
                 let beside = typed.iter().find(|(generic, _)| *generic == name);
                 match beside {
                     Some((_, ty)) => Some(*ty),
-                    None if self.an.library_generic_result(functions[0]) == Some(name) => want,
+                    None if self.an.stdlib_generic_result(functions[0]) == Some(name) => want,
                     None => None,
                 }
             }
             ParameterType::Written(_) => {
-                let own = self.an.library_elementary(functions[0], position)?;
+                let own = self.an.stdlib_elementary(functions[0], position)?;
                 if functions.len() == 1 {
                     return Some(own);
                 }
                 let wanted = want.filter(|want| {
                     let mut functions = functions.iter();
                     functions.any(|function| {
-                        let taken = self.an.library_elementary(*function, position);
-                        taken == Some(*want)
-                            && taken == self.an.library_elementary_result(*function)
+                        let taken = self.an.stdlib_elementary(*function, position);
+                        taken == Some(*want) && taken == self.an.stdlib_elementary_result(*function)
                     })
                 });
                 let real = self.an.types.elementary(own).is_some_and(El::is_real);
@@ -198,15 +197,15 @@ impl Body<'_, '_> {
     /// Whether a function of the library gives the wanted type and takes these arguments as they are;
     /// literals have no type yet.
     pub(super) fn suits(&self, function: PouId, given: &Given, want: TypeId) -> bool {
-        if self.an.library_elementary_result(function) != Some(self.an.types.strip(want)) {
+        if self.an.stdlib_elementary_result(function) != Some(self.an.types.strip(want)) {
             return false;
         }
-        let parameters = self.an.library_parameters(function);
+        let parameters = self.an.stdlib_parameters(function);
         let mut operands = given.operands.iter().enumerate();
         operands.all(|(index, (kind, operand))| {
             let position = position_of(&parameters, index, kind);
             let untyped = matches!(operand.ty, TypeId::UNTYPED_INT | TypeId::UNTYPED_REAL);
-            let taken = position.map(|position| self.an.library_elementary(function, position));
+            let taken = position.map(|position| self.an.stdlib_elementary(function, position));
             untyped || taken == Some(None) || taken == Some(Some(self.an.types.strip(operand.ty)))
         })
     }

@@ -93,35 +93,15 @@ impl Analysis<'_> {
     ) -> Option<()> {
         let arena = &self.unit(unit).arena;
         let written = arena[id];
-        match written.kind {
-            ExprKind::Name(name) => parts.push(Part::Name(st::Ident {
-                name,
-                range: written.range,
-            })),
-            ExprKind::Member { base, member } => {
-                self.written_parts(unit, base, parts)?;
-                parts.push(Part::Name(member));
-            }
-            ExprKind::Index { base, indices } => {
-                self.written_parts(unit, base, parts)?;
-                parts.push(Part::Index(indices));
-            }
-            ExprKind::Literal(_)
-            | ExprKind::Typed { .. }
-            | ExprKind::Part { .. }
-            | ExprKind::Deref(_)
-            | ExprKind::Direct(_)
-            | ExprKind::This
-            | ExprKind::Super
-            | ExprKind::Null
-            | ExprKind::Ref(_)
-            | ExprKind::Call { .. }
-            | ExprKind::Unary { .. }
-            | ExprKind::Binary { .. }
-            | ExprKind::ArrayValue(_)
-            | ExprKind::Repeat { .. }
-            | ExprKind::StructValue(_)
-            | ExprKind::Error => return None,
+        if let ExprKind::Member { base, member } = written.kind {
+            self.written_parts(unit, base, parts)?;
+            parts.push(Part::Name(member));
+        } else if let ExprKind::Index { base, indices } = written.kind {
+            self.written_parts(unit, base, parts)?;
+            parts.push(Part::Index(indices));
+        } else {
+            let (name, range) = (written.kind.name()?, written.range);
+            parts.push(Part::Name(st::Ident { name, range }));
         }
         Some(())
     }

@@ -12,7 +12,7 @@ pub(super) use flow::can_leave;
 use super::analysis::{Analysis, UnitRef};
 use super::bodies::{Checked, Notes};
 use super::signature::{Part, Pou, PouId, UnitId};
-use iecc_ast::st::{self, ExprKind, Member, ModifierKind, PouKind, UnitKind};
+use iecc_ast::st::{self, Member, ModifierKind, PouKind, UnitKind};
 use iecc_diag::{Code, Diagnostic};
 
 impl<'a> Analysis<'a> {
@@ -149,27 +149,8 @@ fn is_abstract(pou: &Pou) -> bool {
 
 /// The name that a path begins with, if it does.
 fn root(arena: &st::Arena, mut path: st::Id<st::Expr>) -> Option<iecc_ast::Symbol> {
-    loop {
-        match arena[path].kind {
-            ExprKind::Name(name) => return Some(name),
-            ExprKind::Member { base, .. }
-            | ExprKind::Part { base, .. }
-            | ExprKind::Index { base, .. } => path = base,
-            ExprKind::Literal(_)
-            | ExprKind::Typed { .. }
-            | ExprKind::Deref(_)
-            | ExprKind::Direct(_)
-            | ExprKind::This
-            | ExprKind::Super
-            | ExprKind::Null
-            | ExprKind::Ref(_)
-            | ExprKind::Call { .. }
-            | ExprKind::Unary { .. }
-            | ExprKind::Binary { .. }
-            | ExprKind::ArrayValue(_)
-            | ExprKind::Repeat { .. }
-            | ExprKind::StructValue(_)
-            | ExprKind::Error => return None,
-        }
+    while let Some(base) = arena[path].kind.base() {
+        path = base;
     }
+    arena[path].kind.name()
 }

@@ -46,14 +46,14 @@ impl Body<'_, '_> {
         if let Some(value) = self.type_query(first, arguments, range) {
             return value;
         }
-        let mut given = self.library_arguments(functions, arguments, None, want);
+        let mut given = self.stdlib_arguments(functions, arguments, None, want);
         if given.has_errors() {
             return Operand::error(range);
         }
         if self.text(self.an.pou(first).name).starts_with("TO_") {
             self.enumerations_as_numbers(&mut given);
         }
-        self.library(functions, given, range, want)
+        self.call_stdlib(functions, given, range, want)
     }
 
     /// `TO_INT(colour)` of CODESYS: the number of a value of an enumeration.
@@ -67,19 +67,19 @@ impl Body<'_, '_> {
     }
 
     /// A call of a library function by its name, made by the compiler.
-    pub(crate) fn library_call(
+    pub(crate) fn stdlib_call(
         &mut self,
         name: &str,
         operands: Vec<Operand>,
         range: TextRange,
         want: Option<TypeId>,
     ) -> Operand {
-        let functions = self.an.library_functions(name);
+        let functions = self.an.stdlib_functions(name);
         if functions.is_empty() {
             let message = format!("the library has no {name} yet");
             return self.error(Message::E2010, range, message);
         }
-        self.library(&functions, Given::positional(operands), range, want)
+        self.call_stdlib(&functions, Given::positional(operands), range, want)
     }
 
     /// A call of a function or method of the user.
@@ -508,7 +508,7 @@ impl Body<'_, '_> {
             ty: operand.ty,
             range: operand.range,
         };
-        let functions = self.an.library_functions("__ASSIGN");
+        let functions = self.an.stdlib_functions("__ASSIGN");
         if functions.is_empty() {
             self.error(
                 Message::E2010,
@@ -517,7 +517,7 @@ impl Body<'_, '_> {
             );
             return;
         }
-        let result = self.library(&functions, Given::positional([to, from]), range, None);
+        let result = self.call_stdlib(&functions, Given::positional([to, from]), range, None);
         if let OperandKind::Value(value) = result.kind {
             self.before(StmtKind::Eval(value), range);
         }

@@ -27,6 +27,6 @@ impl Body<'_, '_> {
     pub(crate) fn character_text(&mut self, operand: &Operand) -> Operand {
         let wide = self.character_width(operand) == Some(true);
         let name = if wide { "TO_WSTRING" } else { "TO_STRING" };
-        self.library_call(name, vec![operand.clone()], operand.range, None)
+        self.stdlib_call(name, vec![operand.clone()], operand.range, None)
     }
 }

@@ -55,7 +55,7 @@ impl Body<'_, '_> {
         given: &Given,
         want: Option<TypeId>,
     ) -> Option<Bound> {
-        let parameters = self.an.library_parameters(function);
+        let parameters = self.an.stdlib_parameters(function);
         let mut generics = self.named_generic(&parameters, given.fixed)?;
         let mut bound = Bound::default();
         for (index, (kind, operand)) in given.operands.iter().enumerate() {
@@ -75,7 +75,7 @@ impl Body<'_, '_> {
                     bound.bindings.open.push((parameter.name, ty));
                 }
                 ParameterType::Written(spec) => {
-                    let ty = self.an.library_type(function, *spec);
+                    let ty = self.an.stdlib_type(function, *spec);
                     self.fits(operand, ty).then_some(())?;
                 }
             }

@@ -21,7 +21,7 @@ use iecc_source::TextRange;
 const MAX_INPUTS: usize = 1024;
 
 impl Body<'_, '_> {
-    pub(super) fn library(
+    pub(super) fn call_stdlib(
         &mut self,
         functions: &[PouId],
         given: Given,
@@ -89,7 +89,7 @@ impl Body<'_, '_> {
     fn unknown_parameter(&mut self, functions: &[PouId], given: &Given) -> bool {
         let mut known = Vec::new();
         for &function in functions {
-            let parameters = self.an.library_parameters(function);
+            let parameters = self.an.stdlib_parameters(function);
             known.extend(parameters.iter().map(|parameter| parameter.name));
         }
         let named = given.operands.iter().filter_map(|(kind, _)| match kind {
@@ -106,7 +106,7 @@ impl Body<'_, '_> {
 
     /// Reports inputs without an argument, where what is given does not say what is meant.
     fn missing_argument(&mut self, function: PouId, given: &Given, range: TextRange) -> bool {
-        let parameters = self.an.library_parameters(function);
+        let parameters = self.an.stdlib_parameters(function);
         let positional = |(kind, _): &&(ArgumentKind, Operand)| *kind == ArgumentKind::Positional;
         let by_position = given.operands.iter().filter(positional).count();
         let is_given = |name| {
@@ -182,7 +182,7 @@ impl Body<'_, '_> {
             bound.positions.into_iter().zip(operands).collect();
         ordered.sort_by_key(|(position, _)| *position);
         let operands = self.typed_operands(function, ordered);
-        let result = self.an.library_result(function, &bound.bindings).or(want);
+        let result = self.an.stdlib_result(function, &bound.bindings).or(want);
         // Of these only MUX can fail.
         if let (Some(eno), false) = (given.eno, name == "mux") {
             let place = self.temporary("ENO", TypeId::BOOL);
@@ -193,11 +193,11 @@ impl Body<'_, '_> {
 
     /// Operands of an intrinsic in the types that the library writes for them.
     fn typed_operands(&mut self, function: PouId, operands: Vec<(usize, Operand)>) -> Vec<Operand> {
-        let parameters = self.an.library_parameters(function);
+        let parameters = self.an.stdlib_parameters(function);
         let typed = operands.into_iter().map(|(position, operand)| {
             match parameters.get(position).map(|parameter| &parameter.ty) {
                 Some(ParameterType::Written(spec)) => {
-                    let ty = self.an.library_type(function, *spec);
+                    let ty = self.an.stdlib_type(function, *spec);
                     if self.an.types.strip(ty) == self.an.types.strip(operand.ty) {
                         return operand;
                     }
@@ -221,7 +221,7 @@ impl Body<'_, '_> {
         let mut operands = operands.into_iter().map(|(_, operand)| operand);
         if self.an.pragma(function, "chain") {
             return self.chained(operands.collect(), range, &|body, left, right| {
-                body.library(&[function], Given::positional([left, right]), range, want)
+                body.call_stdlib(&[function], Given::positional([left, right]), range, want)
             });
         }
         let first = operands
@@ -231,7 +231,7 @@ impl Body<'_, '_> {
             if left.is_error() {
                 return left;
             }
-            self.library(&[function], Given::positional([left, right]), range, want)
+            self.call_stdlib(&[function], Given::positional([left, right]), range, want)
         })
     }
 
@@ -250,14 +250,14 @@ impl Body<'_, '_> {
             return None;
         }
         let (function, source, converts) = self.an.typed_name(name)?;
-        let functions = self.an.library_functions(&function);
+        let functions = self.an.stdlib_functions(&function);
         if functions.is_empty() {
             return None;
         }
         let want = if converts { None } else { want };
         let mut given = {
             let (source, want) = (converts.then_some(source), Some(source));
-            self.library_arguments(&functions, arguments, source, want)
+            self.stdlib_arguments(&functions, arguments, source, want)
         };
         if given.has_errors() {
             return Some(Operand::error(range));
@@ -274,19 +274,19 @@ impl Body<'_, '_> {
             }
         }
         given.fixed = (!converts).then_some(source);
-        Some(self.library(&functions, given, range, want))
+        Some(self.call_stdlib(&functions, given, range, want))
     }
 
     /// The arguments of a library function, EN and ENO left out. All are of type `source`, if it is
     /// given; else those made of literals alone take their types from others, or from what is wanted.
-    pub(super) fn library_arguments(
+    pub(super) fn stdlib_arguments(
         &mut self,
         functions: &[PouId],
         arguments: st::List<Argument>,
         source: Option<TypeId>,
         want: Option<TypeId>,
     ) -> Given {
-        let parameters = self.an.library_parameters(functions[0]);
+        let parameters = self.an.stdlib_parameters(functions[0]);
         let (mut open, mut typed) = (Vec::new(), Vec::new());
         let written: Vec<Argument> = self.arena()[arguments].to_vec();
         let mut given = Given {

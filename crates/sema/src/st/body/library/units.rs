@@ -12,7 +12,7 @@ use iecc_ast::st::{
 
 impl Analysis<'_> {
     /// The functions of the library with a name.
-    pub(crate) fn library_functions(&self, name: &str) -> Vec<PouId> {
+    pub(crate) fn stdlib_functions(&self, name: &str) -> Vec<PouId> {
         let Some(symbol) = self.names.find(name) else {
             return Vec::new();
         };
@@ -28,7 +28,7 @@ impl Analysis<'_> {
     }
 
     /// The parameters of a library function as they are written.
-    pub(crate) fn library_parameters(&self, function: PouId) -> Vec<Parameter> {
+    pub(crate) fn stdlib_parameters(&self, function: PouId) -> Vec<Parameter> {
         let unit = self.unit(self.pou(function).unit);
         let UnitKind::Pou(pou) = &unit.kind else {
             return Vec::new();
@@ -91,11 +91,7 @@ impl Analysis<'_> {
     }
 
     /// The result that a library function declares.
-    pub(crate) fn library_result(
-        &mut self,
-        function: PouId,
-        bindings: &Bindings,
-    ) -> Option<TypeId> {
+    pub(crate) fn stdlib_result(&mut self, function: PouId, bindings: &Bindings) -> Option<TypeId> {
         let pou = self.pou(function);
         let (unit, namespace) = (pou.unit, pou.namespace);
         let UnitKind::Pou(written) = &self.unit(unit).kind else {
@@ -111,7 +107,7 @@ impl Analysis<'_> {
     }
 
     /// The generic type that the result of a library function has.
-    pub(in crate::st::body) fn library_generic_result(&self, function: PouId) -> Option<Symbol> {
+    pub(in crate::st::body) fn stdlib_generic_result(&self, function: PouId) -> Option<Symbol> {
         let unit = self.unit(self.pou(function).unit);
         let UnitKind::Pou(pou) = &unit.kind else {
             return None;
@@ -123,7 +119,7 @@ impl Analysis<'_> {
     }
 
     /// The elementary type that the result of a library function has by name.
-    pub(in crate::st::body) fn library_elementary_result(&self, function: PouId) -> Option<TypeId> {
+    pub(in crate::st::body) fn stdlib_elementary_result(&self, function: PouId) -> Option<TypeId> {
         let unit = self.unit(self.pou(function).unit);
         let UnitKind::Pou(pou) = &unit.kind else {
             return None;
@@ -132,13 +128,13 @@ impl Analysis<'_> {
     }
 
     /// The elementary type that a parameter of a library function has by name.
-    pub(in crate::st::body) fn library_elementary(
+    pub(in crate::st::body) fn stdlib_elementary(
         &self,
         function: PouId,
         position: usize,
     ) -> Option<TypeId> {
         let unit = self.unit(self.pou(function).unit);
-        match self.library_parameters(function).get(position)?.ty {
+        match self.stdlib_parameters(function).get(position)?.ty {
             ParameterType::Written(spec) => self.elementary_spec(&unit.arena, spec),
             ParameterType::Generic(..) | ParameterType::OpenText { .. } => None,
         }
@@ -155,7 +151,7 @@ impl Analysis<'_> {
     }
 
     /// A type that a library function names.
-    pub(crate) fn library_type(&mut self, function: PouId, spec: st::Id<st::TypeSpec>) -> TypeId {
+    pub(crate) fn stdlib_type(&mut self, function: PouId, spec: st::Id<st::TypeSpec>) -> TypeId {
         let pou = self.pou(function);
         let scope = crate::st::resolve::TypeScope {
             unit: pou.unit,

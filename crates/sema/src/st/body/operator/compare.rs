@@ -124,7 +124,7 @@ impl Body<'_, '_> {
         right: Operand,
         range: TextRange,
     ) -> Operand {
-        let order = self.library_call("__COMPARE", vec![left, right], range, None);
+        let order = self.stdlib_call("__COMPARE", vec![left, right], range, None);
         if order.is_error() {
             return order;
         }

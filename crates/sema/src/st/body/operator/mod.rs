@@ -515,7 +515,7 @@ impl Body<'_, '_> {
                 return self.error(Message::E2027, operand.range, message);
             }
         }
-        self.library_call("EXPT", vec![left, right], range, want)
+        self.stdlib_call("EXPT", vec![left, right], range, want)
     }
 
     /// Whether an operand is a place of an instance.
