@@ -62,9 +62,6 @@ fn merged(found: &Diagnostics, units: &Units) -> Diagnostics {
     let mut more: Vec<Vec<Span>> = Vec::with_capacity(list.len());
     for diagnostic in list {
         let place = diagnostic.primary.as_ref().map(|label| label.span);
-        if made.last() == Some(&diagnostic) {
-            continue;
-        }
         if let (true, Some(span)) = (is_about_name(&diagnostic), place) {
             let key = (units.of(span), subject(&diagnostic));
             let index = *first.entry(key).or_insert(made.len());
