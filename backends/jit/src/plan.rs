@@ -307,7 +307,7 @@ fn rounds(facts: &Facts, loops: &Loops, each: &Loop) -> Option<u64> {
     let mut rounds = 1u64;
     for outer in around {
         let trips = facts.ranges.as_ref()?.trips(outer.header)?;
-        let times = trips.most + u64::from(outer.header != each.header);
+        let times = u64::from(outer.header != each.header).checked_add(trips.most)?;
         rounds = rounds.checked_mul(times).filter(|_| trips.is_exact)?;
     }
     Some(rounds)
